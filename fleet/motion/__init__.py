@@ -1,0 +1,70 @@
+"""How robots get to where they are sent: the interface, and what a trip leaves behind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.robot import Robot
+from protocols.messages import Point, RobotId
+
+Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
+
+
+@dataclass(frozen=True, slots=True)
+class Trip:
+    """One robot's drive to one site, from departure to the end, whatever the end."""
+
+    robot: RobotId
+    outcome: Outcome
+    origin: Point  # [m]
+    site: Point  # where it was sent [m]
+    end: Point  # where it came to rest [m]
+    departed: float  # [s]
+    ended: float  # [s]
+    path: float  # driven length [m]
+    energy: float  # drained on the way [J]
+
+
+SAMPLE_FIELDS = ("robot", "time", "x", "y", "heading", "energy")
+"""Columns of the samples that motion keeps for observers: id, s, m, m, rad, J left."""
+
+
+class Motion(Protocol):
+    """Drives robots. It alone changes their position, heading and battery on the way."""
+
+    @property
+    def now(self) -> float:
+        """The time that robots have been driven up to [s]."""
+
+    @property
+    def moving(self) -> Sequence[Robot]:
+        """The robots under way."""
+
+    def place(self, robots: Sequence[Robot]) -> None:
+        """Put the fleet on the floor, where the robots say they are. Once, before all else."""
+
+    def cost(self, robot: Robot, site: Point) -> float:
+        """The energy that ``robot`` believes going to ``site`` [m] takes [J]; inf: it cannot."""
+
+    def depart(self, robot: Robot, site: Point) -> None:
+        """Send the robot to ``site`` [m] now."""
+
+    def advance(self, until: float) -> Sequence[Trip]:
+        """Drive on until trips end, at the latest to the time ``until`` [s].
+
+        Returns the trips that ended, at the time ``now``; none if ``until`` came first.
+        """
+
+    def halt(self, robot: Robot) -> None:
+        """The robot's motor fails: it stops where it is, and its trip ends "broken down"."""
+
+    def samples(self) -> NDArray[np.float64]:
+        """Poses (k, 6) on the way since the last call, as :data:`SAMPLE_FIELDS`.
+
+        Empty unless motion was made with a sample interval.
+        """

@@ -1,0 +1,143 @@
+"""Motion as the paper has it: straight to the event at cruise speed, through everything."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import atan2, dist, floor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion import SAMPLE_FIELDS, Outcome, Trip
+from fleet.robot import Robot, RobotSpec
+from protocols.messages import Point
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """A robot under way at constant speed, as far as its battery lasts."""
+
+    robot: Robot
+    origin: Point  # [m]
+    site: Point  # [m]
+    end: Point  # [m]
+    departed: float  # [s]
+    ends: float  # [s]
+    charge: float  # at departure [J]
+    energy: float  # that the whole leg takes [J]
+    outcome: Outcome
+
+    def share(self, time: float) -> float:
+        """How much of the leg is driven at ``time`` [s], in [0, 1]."""
+        return 1.0 if time >= self.ends else (time - self.departed) / (self.ends - self.departed)
+
+
+class StraightMotion:
+    """Points at constant speed; Eq. (1) holds exactly. Robots pass through one another."""
+
+    def __init__(self, spec: RobotSpec, sample_interval: float | None = None) -> None:
+        self.now = 0.0  # [s]
+        self._cruise = spec.cruise
+        self._per_metre = spec.power.per_metre(spec.cruise)
+        self._interval = sample_interval
+        self._legs: list[_Leg] = []
+        self._samples: list[NDArray[np.float64]] = []
+
+    @property
+    def moving(self) -> Sequence[Robot]:
+        """The robots under way."""
+        return [leg.robot for leg in self._legs]
+
+    def place(self, robots: Sequence[Robot]) -> None:
+        """Nothing to do: points need no room."""
+
+    def cost(self, robot: Robot, site: Point) -> float:
+        """Eq. (1) on the straight line [J]."""
+        return self._per_metre * dist(robot.position, site)
+
+    def depart(self, robot: Robot, site: Point) -> None:
+        """Send the robot to ``site`` [m] now."""
+        origin, charge = robot.position, robot.battery.charge
+        length = dist(origin, site)
+        energy = self._per_metre * length
+        end, outcome = site, "arrived"
+        if energy > charge:
+            reached = charge / energy
+            end = tuple(a + reached * (b - a) for a, b in zip(origin, site, strict=True))
+            length, energy, outcome = reached * length, charge, "battery empty"
+        robot.heading = atan2(site[1] - origin[1], site[0] - origin[0])
+        self._legs.append(
+            _Leg(
+                robot, origin, site, end, self.now, self.now + length / self._cruise,
+                charge, energy, outcome,
+            )  # fmt: skip
+        )
+
+    def advance(self, until: float) -> Sequence[Trip]:
+        """Drive on to the next end of a trip, at the latest to the time ``until`` [s]."""
+        before = self.now
+        self.now = min(until, min((leg.ends for leg in self._legs), default=until))
+        trips, under_way = [], []
+        for leg in self._legs:
+            self._sample(leg, before)
+            share = leg.share(self.now)
+            robot = leg.robot
+            if share < 1.0:
+                robot.position = _between(leg, share)
+                robot.battery.charge = leg.charge - share * leg.energy
+                under_way.append(leg)
+                continue
+            robot.position = leg.end
+            robot.battery.charge = leg.charge - leg.energy
+            trips.append(
+                Trip(
+                    robot.id, leg.outcome, leg.origin, leg.site, leg.end,
+                    leg.departed, leg.ends, dist(leg.origin, leg.end), leg.energy,
+                )  # fmt: skip
+            )
+        self._legs = under_way
+        return trips
+
+    def halt(self, robot: Robot) -> None:
+        """The robot's motor fails: its leg ends here and now."""
+        for k, leg in enumerate(self._legs):
+            if leg.robot is robot:
+                share = leg.share(self.now)
+                self._legs[k] = replace(
+                    leg, end=_between(leg, share), ends=self.now, energy=share * leg.energy,
+                    outcome="broken down",
+                )  # fmt: skip
+
+    def samples(self) -> NDArray[np.float64]:
+        """Poses under way since the last call, by time."""
+        if not self._samples:
+            return np.empty((0, len(SAMPLE_FIELDS)))
+        rows = np.vstack(self._samples)
+        self._samples.clear()
+        return rows[np.lexsort((rows[:, 0], rows[:, 1]))]
+
+    def _sample(self, leg: _Leg, after: float) -> None:
+        """Keep the leg's poses on the grid of its own clock in (``after``, now], and its end."""
+        if self._interval is None:
+            return
+        first = floor((after - leg.departed) / self._interval) + 1
+        last = floor((min(self.now, leg.ends) - leg.departed) / self._interval)
+        times = leg.departed + self._interval * np.arange(first, last + 1)
+        if leg.ends <= self.now:
+            times = np.append(times[times < leg.ends], leg.ends)
+        share = np.array([leg.share(time) for time in times.tolist()])
+        (ax, ay), (bx, by) = leg.origin, leg.end
+        rows = np.empty((len(times), len(SAMPLE_FIELDS)))
+        rows[:, 0] = leg.robot.id
+        rows[:, 1] = times
+        rows[:, 2] = ax + share * (bx - ax)
+        rows[:, 3] = ay + share * (by - ay)
+        rows[:, 4] = leg.robot.heading
+        rows[:, 5] = leg.charge - share * leg.energy
+        self._samples.append(rows)
+
+
+def _between(leg: _Leg, share: float) -> Point:
+    (ax, ay), (bx, by) = leg.origin, leg.end
+    return (ax + share * (bx - ax), ay + share * (by - ay))

@@ -1,0 +1,66 @@
+"""Watching a run: hooks that do nothing by default. Nothing in a run depends on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion import Trip
+from protocols.messages import Award, Event, Heard, RobotId, Transmission
+
+if TYPE_CHECKING:
+    from fleet.results import Summary
+    from fleet.simulation import Fleet
+
+
+class Sent(NamedTuple):
+    """A line of the transcript: one transmission, when it was on the air, and who heard it."""
+
+    number: int  # counts the transmissions of the run, from 1
+    time: float  # [s]
+    event: int  # the id of the event it was about
+    transmission: Transmission
+    heard: Heard
+
+
+class Observer:
+    """Watches a run. Override what you want to see; the rest costs nothing.
+
+    The fleet is live: copy what you keep. Poses under way and links under way are kept and
+    computed only if an observer asks for them by an interval.
+    """
+
+    sample_interval: float | None = None  # [s] between poses of a moving robot
+    link_interval: float | None = None  # [s] between updates of the links while robots drive
+
+    def run_started(self, fleet: Fleet) -> None:
+        """Everybody is in place, nothing has happened yet."""
+
+    def event_raised(self, event: Event, source: RobotId, time: float) -> None:
+        """``source`` is told of the event; again, by another robot, if a trip failed."""
+
+    def sent(self, sent: Sent) -> None:
+        """A transmission was made."""
+
+    def awarded(self, event: Event, award: Award, time: float) -> None:
+        """A conversation has ended."""
+
+    def departed(self, event: Event, robot: RobotId, time: float) -> None:
+        """A robot sets off to an event."""
+
+    def moved(self, samples: NDArray[np.float64]) -> None:
+        """Poses (k, 6) of the robots under way: :data:`fleet.motion.SAMPLE_FIELDS`."""
+
+    def relinked(self, time: float) -> None:
+        """The topology has been brought up to date with robots that moved."""
+
+    def trip_ended(self, event: Event, trip: Trip) -> None:
+        """A robot came to rest: at the event, or short of it."""
+
+    def run_ended(self, summary: Summary) -> None:
+        """The last round is over."""
+
+    def closed(self) -> None:
+        """Called last, also when the run broke off: let go of files."""

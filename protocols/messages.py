@@ -1,0 +1,77 @@
+"""What is said: events, bids, transmissions, and the conversation that they make up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Mapping, Sequence
+from typing import Literal, NamedTuple, Protocol, TypeAlias
+
+RobotId: TypeAlias = int
+Point: TypeAlias = tuple[float, float]  # [m]
+Heard: TypeAlias = tuple[RobotId, ...]  # who received a transmission; empty: nobody
+
+Kind = Literal["route-greedy", "route-face", "call", "bid", "assign"]
+KINDS: tuple[Kind, ...] = ("route-greedy", "route-face", "call", "bid", "assign")
+
+
+class Event(NamedTuple):
+    """Something to attend to: all that a message about it carries."""
+
+    id: int
+    position: Point  # [m]
+
+
+class Bid(NamedTuple):
+    """An offer to serve an event. The lower cost wins, ties go to the lower robot id."""
+
+    cost: float  # in the metric's own unit
+    robot: RobotId
+
+
+class Transmission(NamedTuple):
+    """One frame on the air."""
+
+    kind: Kind
+    sender: RobotId
+    receiver: RobotId | None  # None: a broadcast to whoever is in range
+    bid: Bid | None = None  # what a "bid" offers, and which robot an "assign" names
+
+
+class Award(NamedTuple):
+    """What a conversation ends with: who goes, and among whom it was chosen."""
+
+    winner: RobotId | None  # None: nobody can take the task
+    auctioneer: RobotId  # the robot that the search ended at
+    bids: tuple[Bid, ...] = ()  # those the auctioneer chose among, its own included
+
+
+Conversation: TypeAlias = Generator[Transmission, Heard, Award]
+"""A protocol under way: it yields what is sent and is told who heard it."""
+
+
+class Robot(Protocol):
+    """What one robot knows: itself, and where its radio neighbours were last heard."""
+
+    @property
+    def id(self) -> RobotId: ...
+
+    @property
+    def position(self) -> Point:
+        """Its own position [m]."""
+
+    @property
+    def energy(self) -> float:
+        """What its battery holds [J]."""
+
+    @property
+    def neighbours(self) -> Mapping[RobotId, Point]:
+        """Neighbours in the routing graph, by ascending id: last known positions [m]."""
+
+    def cost_to(self, site: Point) -> float:
+        """The energy it believes that going to ``site`` takes [J]; inf if it cannot."""
+
+
+View: TypeAlias = Sequence[Robot]
+"""The fleet by robot id. A protocol asks only the robot whose turn it is to speak."""
+
+ProtocolFunction: TypeAlias = Callable[[View, Event, RobotId], Conversation]
+"""A protocol, its parameters bound: the view, the event, the robot that was told of it."""
