@@ -1,19 +1,24 @@
-"""From the parts that a scenario names to a simulation that is ready to run."""
+"""From a scenario to a simulation that is ready to run."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
-from math import inf, pi
+from math import pi
 
 import numpy as np
 
 from fleet.energy import Battery
-from fleet.motion.straight import StraightMotion
+from fleet.motion.catalogue import MOTIONS
 from fleet.observer import Observer
 from fleet.radio import IdealRadio
-from fleet.robot import Robot, RobotSpec
+from fleet.results import Summary
+from fleet.robot import Robot
+from fleet.scenario.choices import bind_motion, bind_protocol, make_world
+from fleet.scenario.model import Scenario
 from fleet.simulation import Fleet, Labels, Simulation
-from protocols.links import unit_disc
+from protocols.links import connected, unit_disc
+from protocols.messages import Point
 from protocols.topology import Topology
 from worlds.arena import FloatArray, ImpossibleWorld
 from worlds.catalogue import World
@@ -21,8 +26,98 @@ from worlds.catalogue import World
 STREAMS = ("placement", "sites", "collector", "heading")
 """Independent random streams of a run. Append only: the order decides every run."""
 
+ATTEMPTS = 2000  # placements drawn in search of a connected network
+MOST_LINKS = 20_000_000  # twice the unit disc links that fit into memory and patience
+COMPILE_ABOVE = 200  # robots from which loading the compiler pays within one run
+
+
+def run(scenario: Scenario, observers: Sequence[Observer] = ()) -> Summary:
+    """Play the scenario to its end.
+
+    Raises:
+        BadInput: something in the scenario does not exist, or does not fit.
+        ImpossibleWorld: no connected network of these robots was found in this world.
+    """
+    return prepare(scenario, observers).run()
+
+
+def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulation:
+    """The simulation of ``scenario``, everybody in place.
+
+    Raises:
+        BadInput: something in the scenario does not exist, or does not fit.
+        ImpossibleWorld: no connected network of these robots was found in this world.
+    """
+    random = streams(scenario.seed)
+    protocol = bind_protocol(scenario)
+    world = make_world(scenario.world)
+    intervals = [o.sample_interval for o in observers if o.sample_interval is not None]
+    motion = bind_motion(scenario.motion)(scenario.robot, world.arena, min(intervals, default=None))
+    solid = MOTIONS[scenario.motion.name].solid
+    points = connected_start(
+        world, scenario.robots, scenario.robot.radius if solid else 0.0, scenario.range,
+        random["placement"],
+    )  # fmt: skip
+    topology = Topology(
+        points,
+        scenario.range,
+        scenario.graph,
+        compiled=solid or len(points) > COMPILE_ABOVE or "numba" in sys.modules,
+    )
+    radio = IdealRadio(topology)
+    headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
+    robots = [
+        Robot(id, point, heading, Battery(scenario.robot.capacity), scenario.range, radio.tables, motion)
+        for id, (point, heading) in enumerate(zip(points, headings, strict=True))
+    ]
+    motion.place(robots)
+    labels = Labels(
+        scenario.protocol.name, scenario.motion.name, scenario.world.name,
+        scenario.seed, scenario.search_radius,
+    )  # fmt: skip
+    return Simulation(
+        Fleet(labels, world.arena, scenario.robot, robots, topology),
+        protocol,
+        radio,
+        motion,
+        world.sites(world.arena, random["sites"]),
+        uniform_shares(random["collector"]),
+        rounds=scenario.rounds,
+        observers=observers,
+    )
+
 
 def streams(seed: int) -> dict[str, np.random.Generator]:
     """One generator for each purpose, all spawned from the run's one seed."""
     children = np.random.SeedSequence(seed).spawn(len(STREAMS))
     return dict(zip(STREAMS, map(np.random.default_rng, children), strict=True))
+
+
+def connected_start(
+    world: World, count: int, radius: float, radio_range: float, rng: np.random.Generator
+) -> list[Point]:
+    """Places [m] for ``count`` robots of ``radius`` [m] that make a connected network.
+
+    Raises:
+        ImpossibleWorld: none of :data:`ATTEMPTS` placements was connected.
+    """
+    degree = count * pi * radio_range**2 / (world.arena.width * world.arena.height)
+    if count * min(degree, count) > MOST_LINKS:
+        raise ImpossibleWorld(
+            f"robots is {count}; {min(degree, count):.0f} of them within range of each"
+            f" are too many links to keep; expected fewer robots or a shorter range"
+        )
+    for _ in range(ATTEMPTS):
+        positions: FloatArray = world.place(world.arena, count, radius, rng)
+        if connected(count, unit_disc(positions, radio_range)):
+            return [(x, y) for x, y in positions.tolist()]
+    raise ImpossibleWorld(
+        f"range is {radio_range} m; none of {ATTEMPTS} placements of {count} robots made a"
+        f" connected network; expected a longer range or more robots"
+    )
+
+
+def uniform_shares(rng: np.random.Generator) -> Iterator[float]:
+    """Numbers in [0, 1) without end."""
+    while True:
+        yield from rng.random(1024).tolist()

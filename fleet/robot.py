@@ -37,6 +37,10 @@ class RobotSpec:
                 raise ValueError(f"robot {name} is {value}; expected more than 0")
 
 
+PRESETS: dict[str, RobotSpec] = {"small": RobotSpec()}
+"""Robots by name, for scenario files."""
+
+
 class Estimator(Protocol):
     """Whoever can tell what a drive would cost."""
 
@@ -52,6 +56,7 @@ class Robot:
 
     __slots__ = (
         "_motion", "_tables", "alive", "battery", "failed_sites", "heading", "id", "position",
+        "radio_range",
     )  # fmt: skip
 
     def __init__(
@@ -60,6 +65,7 @@ class Robot:
         position: Point,
         heading: float,
         battery: Battery,
+        radio_range: float,
         tables: Sequence[Mapping[RobotId, Point]],
         motion: Estimator,
     ) -> None:
@@ -67,6 +73,7 @@ class Robot:
         self.position = position  # [m]
         self.heading = heading  # [rad]
         self.battery = battery
+        self.radio_range = radio_range  # r [m]
         self.alive = True
         self.failed_sites: set[Point] = set()  # it was sent there and did not get there
         self._tables = tables

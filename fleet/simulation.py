@@ -189,7 +189,7 @@ class Simulation:
         left = [robot.battery.charge for robot in fleet.robots]
         initial = fsum(robot.battery.capacity for robot in fleet.robots)
         mean = fsum(left) / n
-        by_kind = {kind: tally.kinds[kind] for kind in KINDS}
+        by_kind: dict[str, int] = {kind: tally.kinds[kind] for kind in KINDS}
         messages = sum(by_kind.values())
         return Summary(
             protocol=labels.protocol,

@@ -11,6 +11,7 @@ to 4.4 (doi:10.3390/s21186149).
 from __future__ import annotations
 
 from collections.abc import Generator
+from itertools import pairwise
 from typing import TypeAlias
 
 from protocols.messages import Award, Bid, Event, Heard, Robot, RobotId, Transmission, View
@@ -125,7 +126,7 @@ def assign(
     while path[-1] != auctioneer:
         path.append(parent[path[-1]])
     path.reverse()
-    for sender, receiver in zip(path, path[1:]):
+    for sender, receiver in pairwise(path):
         if not (yield Transmission("assign", sender, receiver, best)):
             return False
     return True

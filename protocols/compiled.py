@@ -27,7 +27,7 @@ def kernel(function: F) -> F:
     import numba
 
     numba.config.CACHE_DIR = str(_cache_folder(numba.__version__))
-    compiled: Any = numba.njit(function, error_model="numpy")
+    compiled = numba.njit(function, error_model="numpy")
     compiled._cache = _forgiving_cache(function)
     result: F = compiled
     return result
@@ -37,11 +37,11 @@ def _forgiving_cache(function: Callable[..., Any]) -> Any:
     """A cache on disk that recompiles what it cannot read, where numba's own would raise."""
     from numba.core.caching import FunctionCache
 
-    class ForgivingCache(FunctionCache):  # type: ignore[misc]  # numba ships no types
+    class ForgivingCache(FunctionCache):  # type: ignore[misc]  # numba is not typed
         def load_overload(self, sig: Any, target_context: Any) -> Any:
             try:
                 return super().load_overload(sig, target_context)
-            except Exception:  # a file cut short by a full disk or a power cut
+            except Exception:  # noqa: BLE001  # a file cut short may raise anything
                 self.flush()
                 return None
 

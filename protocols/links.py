@@ -5,14 +5,34 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+DENSE_UP_TO = 1000  # robots for which all distances at once are quicker than a tree
 RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one
 
 
 def unit_disc(positions: NDArray[np.float64], radio_range: float) -> NDArray[np.intp]:
     """Pairs (u < v) within range of each other. ``positions`` (n, 2) [m]; returns (m, 2)."""
+    if len(positions) > DENSE_UP_TO:
+        from scipy.spatial import cKDTree
+
+        pairs = cKDTree(positions).query_pairs(radio_range, output_type="ndarray")
+        return np.asarray(pairs, dtype=np.intp)
     x, y = positions[:, 0], positions[:, 1]
     squared = (x[:, None] - x[None, :]) ** 2 + (y[:, None] - y[None, :]) ** 2
     return np.argwhere(np.triu(squared <= radio_range * radio_range, 1))
+
+
+def connected(count: int, pairs: NDArray[np.intp]) -> bool:
+    """Whether the ``pairs`` (m, 2) join ``count`` robots into one network."""
+    return component_count(count, pairs) == 1
+
+
+def component_count(count: int, pairs: NDArray[np.intp]) -> int:
+    """How many networks ``count`` robots fall into."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    return int(connected_components(links, directed=False)[0])
 
 
 def gabriel(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -70,9 +90,7 @@ def _blocked(
     return blocked
 
 
-def _clearly_blocked(
-    positions: NDArray[np.float64], pairs: NDArray[np.intp]
-) -> NDArray[np.bool_]:
+def _clearly_blocked(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Pairs with somebody well inside the diametral disc: most of them, found cheaply."""
     x, y = positions[:, 0], positions[:, 1]
     squared = (x[:, None] - x[None, :]) ** 2 + (y[:, None] - y[None, :]) ** 2

@@ -33,7 +33,7 @@ class Transmission(NamedTuple):
     kind: Kind
     sender: RobotId
     receiver: RobotId | None  # None: a broadcast to whoever is in range
-    bid: Bid | None = None  # what a "bid" offers, and which robot an "assign" names
+    bid: Bid | None = None  # what a "bid" offers, an "assign" names, a "call" wants bettered
 
 
 class Award(NamedTuple):
@@ -52,11 +52,16 @@ class Robot(Protocol):
     """What one robot knows: itself, and where its radio neighbours were last heard."""
 
     @property
-    def id(self) -> RobotId: ...
+    def id(self) -> RobotId:
+        """Its number, from 0."""
 
     @property
     def position(self) -> Point:
         """Its own position [m]."""
+
+    @property
+    def radio_range(self) -> float:
+        """How far its radio reaches: r [m]."""
 
     @property
     def energy(self) -> float:

@@ -16,16 +16,10 @@ Metric: TypeAlias = Callable[[Robot, Point], float]
 
 
 def energy_left(robot: Robot, site: Point) -> float:
-    """Most energy left after the trip: minus that energy [J] (RFTA2, section 4.2)."""
+    """Most energy left after the trip; the cost is minus that energy [J]."""
     return robot.cost_to(site) - robot.energy
 
 
 def distance(robot: Robot, site: Point) -> float:
-    """Nearest robot: straight-line distance to the event [m] (RFTA1, section 4.1)."""
+    """Nearest to the event, as the crow flies [m]."""
     return dist(robot.position, site)
-
-
-METRICS: dict[str, Metric] = {
-    "energy-left": energy_left,
-    "distance": distance,
-}

@@ -6,10 +6,15 @@ All arrays are the caller's and are changed in place. Importing this module load
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from protocols.compiled import kernel
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
 
 UDG, GABRIEL, RNG = 0, 1, 2
 RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one
@@ -38,7 +43,7 @@ def blocks(graph, w, u, v, wx, wy, ux, uy, vx, vy):
 @kernel
 def _cell(value, origin, size, count):
     """The row or column of a coordinate [m]; what lies outside belongs to the border."""
-    return min(max(int(math.floor((value - origin) / size)), 0), count - 1)
+    return min(max(int((value - origin) // size), 0), count - 1)
 
 
 @kernel
@@ -110,16 +115,31 @@ def _free(graph, u, v, near, count, px, py):
     """Whether nobody in ``near`` keeps ``u`` and ``v`` apart."""
     for k in range(count):
         w = near[k]
-        if w != u and w != v:
-            if blocks(graph, w, u, v, px[w], py[w], px[u], py[u], px[v], py[v]):
-                return False
+        if w in (u, v):
+            continue
+        if blocks(graph, w, u, v, px[w], py[w], px[u], py[u], px[v], py[v]):
+            return False
     return True
 
 
 @kernel
 def relink(
-    robot, x, y, graph, radio_range, px, py, links, degree, head, after, grid, marked, near, changed
-):
+    robot: int,
+    x: float,
+    y: float,
+    graph: int,
+    radio_range: float,
+    px: FloatArray,
+    py: FloatArray,
+    links: IntArray,
+    degree: IntArray,
+    head: IntArray,
+    after: IntArray,
+    grid: FloatArray,
+    marked: NDArray[np.bool_],
+    near: IntArray,
+    changed: IntArray,
+) -> int:
     """Move ``robot`` to (x, y) [m], or off the air with NaN, and bring the links up to date.
 
     ``px, py``: (n,) positions [m]; ``links`` (n, capacity) and ``degree`` (n,): adjacency;
@@ -161,22 +181,20 @@ def relink(
             dx, dy = px[u] - px[v], py[u] - py[v]
             if graph == UDG or dx * dx + dy * dy > limit:
                 continue
-            if is_there and blocks(graph, robot, u, v, x, y, px[u], py[u], px[v], py[v]):
-                if _position_of(u, links, degree, v) >= 0:
-                    _unlink(u, v, links, degree)
-                    marked[u] = marked[v] = True
-            elif was_there and blocks(
-                graph, robot, u, v, old_x, old_y, px[u], py[u], px[v], py[v]
-            ):
-                if _position_of(u, links, degree, v) < 0 and _free(
-                    graph, u, v, near, count, px, py
-                ):
-                    _link(u, v, links, degree)
-                    marked[u] = marked[v] = True
+            ux, uy, vx, vy = px[u], py[u], px[v], py[v]
+            now = is_there and blocks(graph, robot, u, v, x, y, ux, uy, vx, vy)
+            then = was_there and blocks(graph, robot, u, v, old_x, old_y, ux, uy, vx, vy)
+            if not now and not then:
+                continue
+            linked = _position_of(u, links, degree, v) >= 0
+            if now and linked:
+                _unlink(u, v, links, degree)
+                marked[u] = marked[v] = True
+            elif not now and not linked and _free(graph, u, v, near, count, px, py):
+                _link(u, v, links, degree)
+                marked[u] = marked[v] = True
         dx, dy = px[u] - x, py[u] - y
-        if is_there and dx * dx + dy * dy <= limit and _free(
-            graph, robot, u, near, count, px, py
-        ):
+        if is_there and dx * dx + dy * dy <= limit and _free(graph, robot, u, near, count, px, py):
             _link(robot, u, links, degree)
             marked[u] = True
     changes = 1

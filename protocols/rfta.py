@@ -23,6 +23,4 @@ def rfta2(
 ) -> Conversation:
     """Route to the event, then auction among the neighbours of the robot found (section 4.2)."""
     found = yield from find(view, source, event, search)
-    return (
-        yield from tree_auction(view, found, event, metric, auctioneer_bids=auctioneer_bids)
-    )
+    return (yield from tree_auction(view, found, event, metric, auctioneer_bids=auctioneer_bids))

@@ -55,7 +55,7 @@ class Arena:
             raise ImpossibleWorld(
                 f"an arena of {self.width} m × {self.height} m has no room {margin} m off its walls"
             )
-        return low + rng.random((count, 2)) * (high - low)
+        return np.asarray(low + rng.random((count, 2)) * (high - low))
 
 
 def scatter(
@@ -77,9 +77,11 @@ def scatter(
             clearance = 0.0 if shape is arena.hole else radius
             free &= shape.distance(drawn) > clearance
         drawn = drawn[free]
-        placed = _spaced(placed, drawn, count, 2.0 * radius) if radius else np.vstack(
-            [placed, drawn]
-        )[:count]
+        placed = (
+            _spaced(placed, drawn, count, 2.0 * radius)
+            if radius
+            else np.vstack([placed, drawn])[:count]
+        )
         if len(placed) == count:
             return placed
     raise ImpossibleWorld(

@@ -23,5 +23,4 @@ def uniform_sites(arena: Arena, rng: np.random.Generator) -> Iterator[Corner]:
         barren = 0 if free.any() else barren + 1
         if barren > 100:
             raise ImpossibleWorld("the obstacles cover the whole arena; expected some free floor")
-        for x, y in drawn[free].tolist():
-            yield (x, y)
+        yield from map(tuple, drawn[free].tolist())

@@ -18,7 +18,7 @@ class Shape(Protocol):
     def distance(self, points: FloatArray) -> FloatArray:
         """How far outside the shape ``points`` (k, 2) [m] are (k,) [m]; 0 inside."""
 
-    def outline(self, corners: int = 64) -> FloatArray:
+    def outline(self) -> FloatArray:
         """The boundary as a polygon (c, 2) [m], counter-clockwise."""
 
     def bounds(self) -> tuple[Corner, Corner]:
@@ -42,16 +42,19 @@ class Disc:
             raise ValueError(f"disc radius {self.radius} m; expected more than 0")
 
     def distance(self, points: FloatArray) -> FloatArray:
+        """How far outside the disc ``points`` (k, 2) [m] are (k,) [m]; 0 inside."""
         away = np.hypot(points[:, 0] - self.x, points[:, 1] - self.y) - self.radius
         return np.asarray(np.maximum(away, 0.0))
 
-    def outline(self, corners: int = 64) -> FloatArray:
-        turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    def outline(self) -> FloatArray:
+        """A polygon of 64 corners (64, 2) [m], counter-clockwise."""
+        turn = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
         return np.column_stack(
             [self.x + self.radius * np.cos(turn), self.y + self.radius * np.sin(turn)]
         )
 
     def bounds(self) -> tuple[Corner, Corner]:
+        """The lower left and upper right corner of the bounding box [m]."""
         return (
             (self.x - self.radius, self.y - self.radius),
             (self.x + self.radius, self.y + self.radius),
@@ -80,6 +83,7 @@ class Polygon:
         return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 
     def distance(self, points: FloatArray) -> FloatArray:
+        """How far outside the polygon ``points`` (k, 2) [m] are (k,) [m]; 0 inside."""
         a = np.array(self.corners)
         b = np.roll(a, -1, axis=0)
         side = b - a
@@ -98,11 +102,13 @@ class Polygon:
             at = a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
         return np.asarray((straddles & (points[:, 0, None] < at)).sum(axis=1) % 2 == 1)
 
-    def outline(self, corners: int = 64) -> FloatArray:
+    def outline(self) -> FloatArray:
+        """The corners (c, 2) [m], counter-clockwise."""
         points = np.array(self.corners)
         return points if self.signed_area() > 0.0 else points[::-1].copy()
 
     def bounds(self) -> tuple[Corner, Corner]:
+        """The lower left and upper right corner of the bounding box [m]."""
         points = np.array(self.corners)
         low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         return (low[0], low[1]), (high[0], high[1])

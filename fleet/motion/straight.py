@@ -61,16 +61,24 @@ class StraightMotion:
         origin, charge = robot.position, robot.battery.charge
         length = dist(origin, site)
         energy = self._per_metre * length
-        end, outcome = site, "arrived"
+        end = site
+        outcome: Outcome = "arrived"
         if energy > charge:
             reached = charge / energy
-            end = tuple(a + reached * (b - a) for a, b in zip(origin, site, strict=True))
+            end = _along(origin, site, reached)
             length, energy, outcome = reached * length, charge, "battery empty"
         robot.heading = atan2(site[1] - origin[1], site[0] - origin[0])
         self._legs.append(
             _Leg(
-                robot, origin, site, end, self.now, self.now + length / self._cruise,
-                charge, energy, outcome,
+                robot,
+                origin,
+                site,
+                end,
+                self.now,
+                self.now + length / self._cruise,
+                charge,
+                energy,
+                outcome,
             )  # fmt: skip
         )
 
@@ -92,8 +100,15 @@ class StraightMotion:
             robot.battery.charge = leg.charge - leg.energy
             trips.append(
                 Trip(
-                    robot.id, leg.outcome, leg.origin, leg.site, leg.end,
-                    leg.departed, leg.ends, dist(leg.origin, leg.end), leg.energy,
+                    robot.id,
+                    leg.outcome,
+                    leg.origin,
+                    leg.site,
+                    leg.end,
+                    leg.departed,
+                    leg.ends,
+                    dist(leg.origin, leg.end),
+                    leg.energy,
                 )  # fmt: skip
             )
         self._legs = under_way
@@ -139,5 +154,8 @@ class StraightMotion:
 
 
 def _between(leg: _Leg, share: float) -> Point:
-    (ax, ay), (bx, by) = leg.origin, leg.end
-    return (ax + share * (bx - ax), ay + share * (by - ay))
+    return _along(leg.origin, leg.end, share)
+
+
+def _along(a: Point, b: Point, share: float) -> Point:
+    return (a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]))

@@ -1,0 +1,35 @@
+"""Robot fleets that drive, talk and run out of energy.
+
+>>> import fleet
+>>> fleet.run(fleet.Scenario.of(protocol="rfta2", motion="straight", seed=1)).lifetime
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fleet.assembly import run
+    from fleet.observer import Observer
+    from fleet.results import Summary
+    from fleet.scenario.model import Scenario
+
+__all__ = ["Observer", "Scenario", "Summary", "__version__", "run"]
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Observer": "fleet.observer",
+    "Scenario": "fleet.scenario.model",
+    "Summary": "fleet.results",
+    "run": "fleet.assembly",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is asked for when it is asked for: ``fleet --help`` needs none of it."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(_HOMES[name]), name)

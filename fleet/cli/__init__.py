@@ -1,0 +1,41 @@
+"""The command line. Each command loads what it needs when it runs."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import click
+
+from fleet import __version__
+
+COMMANDS = {
+    "list": ("fleet.cli.listing", "Protocols, metrics, worlds and motions, with their sources."),
+    "run": ("fleet.cli.running", "Play one run and print its summary."),
+    "view": ("fleet.cli.viewing", "Open recordings in the Rerun viewer."),
+}
+
+
+class LazyGroup(click.Group):
+    """Commands that are imported only when they are called, or asked for their own help."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """All command names, in order."""
+        return sorted(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The command of that name, if there is one."""
+        if name not in COMMANDS:
+            return None
+        command: click.Command = import_module(COMMANDS[name][0]).command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """One line a command, from the table above."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, COMMANDS[name][1]) for name in self.list_commands(ctx)])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="fleet")
+def main() -> None:
+    """Robot fleets that drive, talk and run out of energy."""

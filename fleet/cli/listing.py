@@ -1,0 +1,38 @@
+"""``fleet list``: what there is to choose from."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from typing import Any
+
+import click
+
+
+@click.command("list")
+def command() -> None:
+    """Protocols, metrics, worlds and motions, with one line and the source of each."""
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    from fleet.motion.catalogue import MOTIONS
+    from protocols.catalogue import METRICS, PROTOCOLS
+    from worlds.catalogue import WORLDS
+
+    console = Console()
+    catalogues: dict[str, Mapping[str, Any]] = {
+        "protocol": PROTOCOLS, "metric": METRICS, "world": WORLDS, "motion": MOTIONS
+    }  # fmt: skip
+    for kind, catalogue in catalogues.items():
+        table = Table(kind, "what it does", "source", title_justify="left", expand=True)
+        table.columns[0].no_wrap = True
+        for name, entry in sorted(catalogue.items()):
+            table.add_row(name, escape(first_sentence(entry.function)), escape(entry.source))
+        console.print(table)
+
+
+def first_sentence(function: object) -> str:
+    """The first paragraph of a docstring, on one line."""
+    paragraph = (inspect.getdoc(function) or "").partition("\n\n")[0]
+    return " ".join(paragraph.split())

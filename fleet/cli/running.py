@@ -1,0 +1,74 @@
+"""``fleet run``: one run, its summary, and its recording."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fleet.cli.failing import bad_input_exits
+
+
+@click.command("run")
+@click.argument("scenario", required=False, type=click.Path(path_type=Path))
+@click.option("--protocol", help="A name from `fleet list`, or file.py:name.  [rfta2]")
+@click.option("--world", help="A name from `fleet list`.  [random]")
+@click.option("--motion", help="straight, path or physics.  [physics]")
+@click.option("--robots", type=int, help="How many.  [100]")
+@click.option("--range", "range_", type=float, help="Radio range r, in metres.  [2.5]")
+@click.option("--search-radius", type=float, help="SR, in metres.  [2.0]")
+@click.option("--rounds", type=int, help="Stop after so many.  [a whole network lifetime]")
+@click.option("--seed", type=int, help="Decides everything that is random.  [0]")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
+              help="Any scenario key, such as robot.radius=0.2. Repeatable.")  # fmt: skip
+@click.option("--rrd", type=click.Path(path_type=Path), help="Record the run to this file.")
+@click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+def command(
+    scenario: Path | None,
+    range_: float | None,
+    settings: tuple[str, ...],
+    rrd: Path | None,
+    view: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Play one run and print its summary.
+
+    SCENARIO is a TOML file; options win over it. Defaults, in brackets, are the paper's.
+    """
+    from fleet.assembly import run
+    from fleet.cli.progress import RunProgress
+    from fleet.cli.summary import print_summary
+    from fleet.observer import Observer
+    from fleet.scenario.loading import load_scenario
+
+    given = {k: v for k, v in {**options, "range": range_}.items() if v is not None}
+    with bad_input_exits():
+        loaded = load_scenario(scenario, given, settings)
+        observers: list[Observer] = [RunProgress(loaded.rounds)] if sys.stderr.isatty() else []
+        if rrd is not None or view:
+            from fleet.replay import recorder
+
+            observers.append(recorder(loaded, rrd, live=view))
+        summary = run(loaded, observers)
+    if as_json:
+        click.echo(json.dumps(summary.as_dict()))
+        return
+    print_summary(summary)
+    if rrd is not None:
+        click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
+
+
+def program() -> str:
+    """How this program was called, for commands that are printed for the user."""
+    called = Path(sys.argv[0])
+    if called.name == "__main__.py":
+        return f"{Path(sys.executable).name} -m fleet"
+    try:
+        return str(called.relative_to(Path.cwd()))
+    except ValueError:
+        return called.name

@@ -1,0 +1,139 @@
+"""Giving functions their parameters from tables: protocols, metrics, worlds and motions."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import is_dataclass
+from functools import partial
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from fleet.scenario.errors import BadInput, bad, sentence, unknown
+from fleet.scenario.plugins import load_object, looks_like_file
+from protocols.catalogue import METRICS
+from protocols.metrics import Metric
+
+T = TypeVar("T")
+
+
+def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> partial[T]:
+    """``function`` with the keyword parameters of ``table``, checked against its annotations.
+
+    Raises:
+        BadInput: an unknown parameter, or a value of another type; ``key`` is where the table
+            stands in the scenario.
+    """
+    accepted = keywords(function)
+    problems, values = [], {}
+    for name, value in table.items():
+        if name not in accepted:
+            problems.append((f"{key}.{name}", _unknown_parameter(name, accepted)))
+            continue
+        try:
+            values[name] = convert(accepted[name], value, f"{key}.{name}")
+        except BadInput as error:
+            problems.extend(error.problems)
+    if problems:
+        raise BadInput(problems)
+    return partial(function, **values)
+
+
+def keywords(function: Callable[..., Any]) -> dict[str, Any]:
+    """The parameters that a table may set, with their types."""
+    parameters = inspect.signature(function, eval_str=True).parameters.values()
+    return {p.name: p.annotation for p in parameters if p.kind is p.KEYWORD_ONLY}
+
+
+def convert(kind: Any, value: Any, key: str) -> Any:
+    """``value``, as read from TOML, as a value of type ``kind``.
+
+    Raises:
+        BadInput: it is not one.
+    """
+    if kind is Metric or kind == Metric:
+        return metric(value, key)
+    problems = list(_unknown_keys(kind, value, key))
+    if not problems:
+        try:
+            return TypeAdapter(kind).validate_json(json.dumps(value), strict=True)
+        except ValidationError as error:
+            problems = [
+                (
+                    _dotted(key, e["loc"]),
+                    sentence(e["type"], e["input"], e.get("ctx", {}), e["msg"]),
+                )
+                for e in error.errors(include_url=False)
+            ]
+    raise BadInput(problems)
+
+
+def metric(value: Any, key: str) -> Metric:
+    """A bid metric from its name, ``file.py:name``, or a table of a name and parameters."""
+    table = {"name": value} if isinstance(value, str) else value
+    table = dict(table) if isinstance(table, Mapping) else {}
+    name = table.pop("name", None)
+    if not isinstance(name, str):
+        raise bad(key, f"is {value!r}; expected the name of a metric, or a table with one")
+    if looks_like_file(name):
+        function: Any = load_object(name, key)
+    elif name in METRICS:
+        function = METRICS[name].function
+    else:
+        raise bad(key, unknown("metric", name, METRICS))
+    if inspect.isclass(function):
+        make: Any = function
+        made: Metric = build(make, table, key)
+        return made
+    if table:
+        raise bad(f"{key}.{next(iter(table))}", f"the metric {name!r} has no parameters")
+    found: Metric = function
+    return found
+
+
+def build(function: Callable[..., T], table: Mapping[str, Any], key: str) -> T:
+    """Call ``function`` with the table; what it refuses is bad input.
+
+    Raises:
+        BadInput: from binding, or in place of the ValueError that the function raised.
+    """
+    make = bind(function, table, key)
+    try:
+        return make()
+    except ValueError as error:
+        raise bad(key, str(error)) from error
+
+
+def _unknown_parameter(name: str, accepted: Mapping[str, Any]) -> str:
+    if not accepted:
+        return "unknown key; there are no parameters here"
+    return unknown("key", name, accepted)
+
+
+def _unknown_keys(kind: Any, value: Any, key: str) -> list[tuple[str, str]]:
+    """Keys of nested tables that their dataclass does not have."""
+    if not (is_dataclass(kind) and isinstance(kind, type) and isinstance(value, Mapping)):
+        return []
+    fields = {
+        p.name: p.annotation for p in inspect.signature(kind, eval_str=True).parameters.values()
+    }
+    problems = []
+    for name, item in value.items():
+        dotted = f"{key}.{name}" if key else name
+        if name in fields:
+            problems.extend(_unknown_keys(fields[name], item, dotted))
+        else:
+            problems.append((dotted, unknown("key", name, fields)))
+    return problems
+
+
+def _dotted(key: str, loc: tuple[int | str, ...]) -> str:
+    parts = [key] if key else []
+    for part in loc:
+        if isinstance(part, int):
+            parts[-1:] = [f"{parts[-1]}[{part}]" if parts else f"[{part}]"]
+        else:
+            parts.append(part)
+    return ".".join(parts)

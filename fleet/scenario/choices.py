@@ -1,0 +1,72 @@
+"""From the names in a scenario to what they stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fleet.motion import Motion
+from fleet.motion.catalogue import MOTIONS
+from fleet.scenario.binding import bind, build, keywords
+from fleet.scenario.errors import bad, unknown
+from fleet.scenario.model import Choice, Scenario
+from fleet.scenario.plugins import load_object, looks_like_file
+from protocols.catalogue import PROTOCOLS
+from protocols.messages import Conversation, ProtocolFunction
+from worlds.catalogue import WORLDS, World
+
+
+def check(scenario: Scenario) -> None:
+    """Look everything up that the scenario names.
+
+    Raises:
+        BadInput: something of a name does not exist, or a parameter does not fit.
+    """
+    bind_protocol(scenario)
+    make_world(scenario.world)
+    bind_motion(scenario.motion)
+
+
+def bind_protocol(scenario: Scenario) -> ProtocolFunction:
+    """The scenario's protocol with its parameters: from the catalogue, or a file of the user's.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    name, parameters = scenario.protocol.name, dict(scenario.protocol.parameters)
+    if looks_like_file(name):
+        function: Callable[..., Conversation] = load_object(name, "protocol")
+    elif name in PROTOCOLS:
+        function = PROTOCOLS[name].function
+    else:
+        raise bad("protocol", unknown("protocol", name, PROTOCOLS))
+    accepted = keywords(function)
+    search = parameters.get("search", {})
+    if "radius" in search or "search_radius" in parameters:
+        raise bad("protocol", "its search radius is the scenario's; set search_radius instead")
+    if "search" in accepted:
+        parameters["search"] = {**search, "radius": scenario.search_radius}
+    elif "search_radius" in accepted:
+        parameters["search_radius"] = scenario.search_radius
+    return bind(function, parameters, "protocol")
+
+
+def make_world(choice: Choice) -> World:
+    """The world of that name, with its parameters.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    if choice.name not in WORLDS:
+        raise bad("world", unknown("world", choice.name, WORLDS))
+    return build(WORLDS[choice.name].function, choice.parameters, "world")
+
+
+def bind_motion(choice: Choice) -> Callable[..., Motion]:
+    """The motion of that name: to be called with robot, arena and sample interval.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    if choice.name not in MOTIONS:
+        raise bad("motion", unknown("motion", choice.name, MOTIONS))
+    return bind(MOTIONS[choice.name].function, choice.parameters, "motion")
