@@ -4,13 +4,15 @@ Every auction here is a part of a conversation: a generator of transmissions tha
 the award. A call spreads outwards hop by hop, bids come back along the way it took.
 
 References: Mezei, Malbasa and Stojmenovic, IEEE Robotics & Automation Magazine 17(4), 2010
-(k-SAP and k-SAAP); Stanulovic, Mitton and Mezei, Sensors 21(18):6149, 2021, sections 4.1
-to 4.4 (doi:10.3390/s21186149).
+(k-SAP and k-SAAP) and Ad Hoc & Sensor Wireless Networks 17(1-2), 2013 (greedy extension);
+Stanulovic, Mitton and Mezei, Sensors 21(18):6149, 2021, sections 4.1 to 4.4
+(doi:10.3390/s21186149).
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -18,6 +20,36 @@ from protocols.messages import Award, Bid, Event, Heard, Robot, RobotId, Transmi
 from protocols.metrics import Metric
 
 Auction: TypeAlias = Generator[Transmission, Heard, Award]
+Part: TypeAlias = Generator[Transmission, Heard, list[Bid]]
+Tree: TypeAlias = dict[RobotId, RobotId]  # who heard the call: from whom, in that order
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AuctionRules:
+    """How a call spreads and how bids come back.
+
+    ``hops`` deep; ``aggregate``: a robot waits for those below it and passes on only the best
+    bid; ``separately``: a call goes to each neighbour by itself instead of once to all;
+    ``reserve``: the call carries the auctioneer's own bid, and only better ones are sent;
+    ``auctioneer_bids``: it competes, instead of going only if nobody else bids.
+
+    Raises:
+        ValueError: hops is below 1.
+    """
+
+    hops: int = 1
+    aggregate: bool = False
+    separately: bool = False
+    reserve: bool = False
+    auctioneer_bids: bool = False
+
+    def __post_init__(self) -> None:
+        if self.hops < 1:
+            raise ValueError(f"hops is {self.hops}; expected 1 or more")
+
+
+ONE_HOP = AuctionRules()
+TWO_HOPS = AuctionRules(hops=2)
 
 
 def offer(robot: Robot, event: Event, metric: Metric) -> Bid | None:
@@ -33,100 +65,115 @@ def keep(view: View, found: RobotId, event: Event, metric: Metric) -> Award:
     return Award(None, found) if bid is None else Award(found, found, (bid,))
 
 
-def tree_auction(
+def auction(
     view: View,
     auctioneer: RobotId,
     event: Event,
     metric: Metric,
-    *,
-    hops: int = 1,
-    aggregate: bool = False,
-    auctioneer_bids: bool = False,
+    rules: AuctionRules = ONE_HOP,
+    may_bid: Callable[[Robot], bool] | None = None,
 ) -> Auction:
-    """Call ``hops`` deep, collect the bids along the tree of calls, award to the best.
+    """Call, collect the bids along the tree of calls, award the event to the best.
 
-    Each robot that hears the call for the first time remembers whom from: its parent. It
-    calls on unless it is ``hops`` away. Bids travel from parent to parent; with
-    ``aggregate`` a robot waits for those below it and passes on only the best.
-    The auctioneer takes the task only if nobody else bids, unless ``auctioneer_bids``.
+    ``may_bid`` keeps robots from bidding for reasons of their own. The auctioneer takes the
+    event only if nobody else bids, unless the rules let it compete.
     """
-    parent: dict[RobotId, RobotId] = {}
+    own = offer(view[auctioneer], event, metric)
+    limit = Bid(metric(view[auctioneer], event.position), auctioneer) if rules.reserve else None
+    tree = yield from call(view, auctioneer, rules, limit)
+    offers = []
+    for robot in tree:
+        bid = offer(view[robot], event, metric)
+        if bid is None or (limit is not None and bid.cost >= limit.cost):
+            continue
+        if may_bid is None or may_bid(view[robot]):
+            offers.append(bid)
+    collect = aggregate if rules.aggregate else relay
+    bids = yield from collect(auctioneer, tree, offers)
+    if own is not None and (rules.auctioneer_bids or not bids):
+        bids.append(own)
+    return (yield from award(auctioneer, tree, bids))
+
+
+def iterated_auction(
+    view: View, auctioneer: RobotId, event: Event, metric: Metric, rules: AuctionRules = ONE_HOP
+) -> Auction:
+    """After the auction, let each winner call its neighbours, until nobody does better."""
+    won = yield from auction(view, auctioneer, event, metric, rules)
+    while won.winner is not None:
+        holder = won.winner
+        own = offer(view[holder], event, metric)
+        tree = yield from call(view, holder, ONE_HOP)
+        offers = [bid for robot in tree if (bid := offer(view[robot], event, metric)) is not None]
+        bids = yield from relay(holder, tree, offers)
+        better = [bid for bid in bids if own is None or bid < own]
+        if not better:
+            break
+        next_won = yield from award(holder, tree, better)
+        if next_won.winner is None:  # it was not told: the holder goes itself
+            break
+        won = Award(next_won.winner, auctioneer, (*won.bids, *better))
+    return won
+
+
+def call(
+    view: View, auctioneer: RobotId, rules: AuctionRules, limit: Bid | None = None
+) -> Generator[Transmission, Heard, Tree]:
+    """Call for bids, hop by hop. A robot's parent is whom it heard the call from first."""
+    tree: Tree = {}
     layer = [auctioneer]
-    for _ in range(hops):
+    for _ in range(rules.hops):
         called: list[RobotId] = []
         for caller in layer:
-            heard = yield Transmission("call", caller, None)
-            for robot in heard:
-                if robot != auctioneer and robot not in parent:
-                    parent[robot] = caller
-                    called.append(robot)
+            receivers: list[RobotId | None] = [None]
+            if rules.separately:
+                receivers = [r for r in view[caller].neighbours if r != tree.get(caller)]
+            for receiver in receivers:
+                for robot in (yield Transmission("call", caller, receiver, limit)):
+                    if robot != auctioneer and robot not in tree:
+                        tree[robot] = caller
+                        called.append(robot)
         layer = called
-    gather = _aggregated if aggregate else _relayed
-    bids = yield from gather(view, auctioneer, event, metric, parent)
-    own = offer(view[auctioneer], event, metric) if auctioneer_bids or not bids else None
-    if own is not None:
-        bids.append(own)
+    return tree
+
+
+def relay(auctioneer: RobotId, tree: Tree, offers: list[Bid]) -> Part:
+    """Every bid travels up the tree by itself; returns those that reached the auctioneer."""
+    arrived: list[Bid] = []
+    for bid in offers:
+        at = bid.robot
+        while at != auctioneer and (yield Transmission("bid", at, tree[at], bid)):
+            at = tree[at]
+        if at == auctioneer:
+            arrived.append(bid)
+    return arrived
+
+
+def aggregate(auctioneer: RobotId, tree: Tree, offers: list[Bid]) -> Part:
+    """From the leaves up, each robot passes on the best of its own bid and those it heard."""
+    best = {bid.robot: bid for bid in offers}
+    arrived: list[Bid] = []
+    for robot in reversed(tree):  # the farthest first
+        bid = best.get(robot)
+        if bid is None or not (yield Transmission("bid", robot, tree[robot], bid)):
+            continue
+        above = tree[robot]
+        if above == auctioneer:
+            arrived.append(bid)
+        else:
+            best[above] = min(bid, best.get(above, bid))
+    return arrived
+
+
+def award(auctioneer: RobotId, tree: Tree, bids: list[Bid]) -> Auction:
+    """Tell the best bidder, down the way its bid came. Nobody wins who was not told."""
     if not bids:
         return Award(None, auctioneer)
     best = min(bids)
-    arrived = yield from assign(auctioneer, best, parent)
-    return Award(best.robot if arrived else None, auctioneer, tuple(bids))
-
-
-Gathering: TypeAlias = Generator[Transmission, Heard, list[Bid]]
-
-
-def _relayed(
-    view: View, auctioneer: RobotId, event: Event, metric: Metric, parent: dict[RobotId, RobotId]
-) -> Gathering:
-    """Every bid goes all the way up by itself."""
-    bids: list[Bid] = []
-    for robot in parent:
-        bid = offer(view[robot], event, metric)
-        if bid is None:
-            continue
-        at = robot
-        while at != auctioneer:
-            if not (yield Transmission("bid", at, parent[at], bid)):
-                break
-            at = parent[at]
-        else:
-            bids.append(bid)
-    return bids
-
-
-def _aggregated(
-    view: View, auctioneer: RobotId, event: Event, metric: Metric, parent: dict[RobotId, RobotId]
-) -> Gathering:
-    """From the leaves up, each robot passes on the best of its own bid and those it heard."""
-    best: dict[RobotId, Bid] = {}
-    bids: list[Bid] = []
-    for robot in reversed(parent):
-        bid = offer(view[robot], event, metric)
-        passed_on = best.get(robot)
-        if bid is None or (passed_on is not None and passed_on < bid):
-            bid = passed_on
-        if bid is None:
-            continue
-        above = parent[robot]
-        if not (yield Transmission("bid", robot, above, bid)):
-            continue
-        if above == auctioneer:
-            bids.append(bid)
-        elif above not in best or bid < best[above]:
-            best[above] = bid
-    return bids
-
-
-def assign(
-    auctioneer: RobotId, best: Bid, parent: dict[RobotId, RobotId]
-) -> Generator[Transmission, Heard, bool]:
-    """Tell the winner, back down the way its bid came. Returns whether it was told."""
     path = [best.robot]
     while path[-1] != auctioneer:
-        path.append(parent[path[-1]])
-    path.reverse()
-    for sender, receiver in pairwise(path):
+        path.append(tree[path[-1]])
+    for sender, receiver in pairwise(reversed(path)):
         if not (yield Transmission("assign", sender, receiver, best)):
-            return False
-    return True
+            return Award(None, auctioneer, tuple(bids))
+    return Award(best.robot, auctioneer, tuple(bids))

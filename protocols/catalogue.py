@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from protocols.gfgf import gfgf2a
+from protocols import central, flooding, gfgf, metrics, rfta
+from protocols.adaptive import aap
+from protocols.connectivity import mia_ta
 from protocols.messages import Conversation
-from protocols.metrics import Metric, distance, energy_left
-from protocols.rfta import rfta2
+from protocols.metrics import Metric
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021"
+MEZEI = "Mezei et al., IEEE Robotics & Automation Magazine 17(4), 2010"
+BOSE = "Bose et al., Wireless Networks 7(6), 2001"
 
 
 class ProtocolEntry(NamedTuple):
@@ -18,6 +21,7 @@ class ProtocolEntry(NamedTuple):
 
     function: Callable[..., Conversation]  # view, event, source; parameters by keyword
     source: str
+    local: bool = True  # False: it asks robots that nobody has talked to
 
 
 class MetricEntry(NamedTuple):
@@ -28,11 +32,40 @@ class MetricEntry(NamedTuple):
 
 
 PROTOCOLS: dict[str, ProtocolEntry] = {
-    "gfgf2a": ProtocolEntry(gfgf2a, f"{PAPER}, section 4.3"),
-    "rfta2": ProtocolEntry(rfta2, f"{PAPER}, section 4.2"),
+    "aap": ProtocolEntry(aap, "doi:10.1177/1550147720932751, our reading"),
+    "bfs": ProtocolEntry(flooding.bfs, f"RODAA, in {PAPER}, section 5"),
+    "face": ProtocolEntry(gfgf.face, BOSE),
+    "gfg": ProtocolEntry(central.gfg, f"{BOSE}; the destination from a location service", False),
+    "gfgf1": ProtocolEntry(gfgf.gfgf1, f"{PAPER}, section 2.5"),
+    "gfgf2": ProtocolEntry(gfgf.gfgf2a, f"{PAPER}, section 2.5"),
+    "gfgf2a": ProtocolEntry(gfgf.gfgf2a, f"{PAPER}, section 4.3"),
+    "greedy": ProtocolEntry(gfgf.greedy_only, "Finn, ISI/RR-87-180, 1987"),
+    "k-saap": ProtocolEntry(flooding.k_saap, MEZEI),
+    "k-sap": ProtocolEntry(flooding.k_sap, MEZEI),
+    "mia-ta": ProtocolEntry(mia_ta, f"in {PAPER}, Table 1, our reading"),
+    "optimum": ProtocolEntry(central.optimum, "an upper bound: all robots are known", False),
+    "rfta1": ProtocolEntry(rfta.rfta1, f"{PAPER}, section 4.1"),
+    "rfta2": ProtocolEntry(rfta.rfta2, f"{PAPER}, section 4.2"),
+    "rfta2-iterated": ProtocolEntry(
+        rfta.rfta2_iterated, "Mezei et al., Ad Hoc & Sensor Wireless Networks 17(1-2), 2013"
+    ),
+    "rfta2ge": ProtocolEntry(rfta.rfta2ge, f"{PAPER}, section 4.4"),
 }
 
 METRICS: dict[str, MetricEntry] = {
-    "distance": MetricEntry(distance, f"{PAPER}, section 4.1"),
-    "energy-left": MetricEntry(energy_left, f"{PAPER}, section 4.2"),
+    "cost-over-left": MetricEntry(
+        metrics.cost_over_left, f"{PAPER}, section 6, read as a quotient"
+    ),
+    "cost-share": MetricEntry(metrics.cost_share, f"{PAPER}, section 6: m·d/E_R"),
+    "cost-times-left": MetricEntry(
+        metrics.cost_times_left, f"{PAPER}, section 6: m·d(E_R − m·d), lowest"
+    ),
+    "distance": MetricEntry(metrics.distance, f"{PAPER}, section 4.1"),
+    "energy-left": MetricEntry(metrics.energy_left, f"{PAPER}, section 4.2"),
+    "energy-left-minus-cost": MetricEntry(
+        metrics.EnergyLeftMinusCost, "energy-left with a weight on the trip"
+    ),
+    "most-cost-times-left": MetricEntry(
+        metrics.most_cost_times_left, f"{PAPER}, section 6: m·d(E_R − m·d), highest"
+    ),
 }

@@ -6,10 +6,24 @@ Reference: Stanulovic, Mitton and Mezei, Sensors 21(18):6149, 2021, section 4
 
 from __future__ import annotations
 
-from protocols.auctions import tree_auction
+from protocols.auctions import AuctionRules, auction, iterated_auction
 from protocols.messages import Conversation, Event, RobotId, View
-from protocols.metrics import Metric, energy_left
+from protocols.metrics import Metric, distance, energy_left
 from protocols.routing import TWO_SR, Search, find
+
+
+def rfta1(
+    view: View,
+    event: Event,
+    source: RobotId,
+    *,
+    search: Search = TWO_SR,
+    metric: Metric = distance,
+) -> Conversation:
+    """Route to the event; neighbours of the robot found bid if they are nearer than it."""
+    found = yield from find(view, source, event, search)
+    rules = AuctionRules(reserve=True, auctioneer_bids=True)
+    return (yield from auction(view, found, event, metric, rules))
 
 
 def rfta2(
@@ -21,6 +35,36 @@ def rfta2(
     metric: Metric = energy_left,
     auctioneer_bids: bool = False,
 ) -> Conversation:
-    """Route to the event, then auction among the neighbours of the robot found (section 4.2)."""
+    """Route to the event, then auction among the neighbours of the robot found."""
     found = yield from find(view, source, event, search)
-    return (yield from tree_auction(view, found, event, metric, auctioneer_bids=auctioneer_bids))
+    rules = AuctionRules(auctioneer_bids=auctioneer_bids)
+    return (yield from auction(view, found, event, metric, rules))
+
+
+def rfta2ge(
+    view: View,
+    event: Event,
+    source: RobotId,
+    *,
+    search: Search = TWO_SR,
+    metric: Metric = energy_left,
+    aggregate: bool = False,
+    auctioneer_bids: bool = False,
+) -> Conversation:
+    """Route to the event, then auction among the neighbours and their neighbours."""
+    found = yield from find(view, source, event, search)
+    rules = AuctionRules(hops=2, aggregate=aggregate, auctioneer_bids=auctioneer_bids)
+    return (yield from auction(view, found, event, metric, rules))
+
+
+def rfta2_iterated(
+    view: View,
+    event: Event,
+    source: RobotId,
+    *,
+    search: Search = TWO_SR,
+    metric: Metric = energy_left,
+) -> Conversation:
+    """As RFTA2, but each winner calls its own neighbours, until nobody does better."""
+    found = yield from find(view, source, event, search)
+    return (yield from iterated_auction(view, found, event, metric))

@@ -115,11 +115,23 @@ def deliver(
             return here
 
 
-def walk_face(view: View, start: RobotId, site: Point, search: Search) -> Routing:
+def follow_faces(view: View, source: RobotId, site: Point, search: Search) -> Routing:
+    """Walk the faces that the line from ``source`` to ``site`` cuts, one after another.
+
+    Ends at the first robot within the search radius, or where the last face closes.
+    """
+    if squared_distance(view[source].position, site) <= search.radius * search.radius:
+        return source
+    return (yield from walk_face(view, source, site, search, until_nearer=False))
+
+
+def walk_face(
+    view: View, start: RobotId, site: Point, search: Search, *, until_nearer: bool = True
+) -> Routing:
     """Walk the face that the ray from ``start`` to ``site`` enters, until something is found.
 
-    Returns the first robot entered that is nearer to the site than ``start``, or within the
-    search radius; else the robot where the walk closed.
+    Returns the first robot entered that is within the search radius or, ``until_nearer``,
+    nearer to the site than ``start``; else the robot where the walk closed.
     """
     origin = view[start].position
     entry = squared_distance(origin, site)
@@ -155,7 +167,7 @@ def walk_face(view: View, start: RobotId, site: Point, search: Search) -> Routin
         seen.add(here)
         position = view[here].position
         distance = squared_distance(position, site)
-        if distance < entry or distance <= enough:
+        if distance <= enough or (until_nearer and distance < entry):
             return here
         reference = bearing(position, behind)
 

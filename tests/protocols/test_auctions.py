@@ -7,7 +7,8 @@ from functools import partial
 import pytest
 from hand_drawn import PER_METRE, Still, converse, network
 
-from protocols.auctions import tree_auction
+from protocols.auctions import AuctionRules
+from protocols.auctions import auction as hold
 from protocols.messages import Award, Event
 from protocols.metrics import distance, energy_left
 
@@ -18,7 +19,7 @@ EVENT = Event(0, (0.5, 0.0))
 
 def auction(view, *, metric=energy_left, **options):
     def protocol(spied, event, source):
-        return (yield from tree_auction(spied, source, event, metric, **options))
+        return (yield from hold(spied, source, event, metric, AuctionRules(**options)))
 
     return converse(protocol, view, EVENT, 0)
 
@@ -91,9 +92,7 @@ def test_distance_metric_sends_the_nearest():
 
 def test_ties_go_to_the_lower_id():
     view = network([(0.0, 0.0), (0.0, 1.0), (0.0, -1.0)], 1.1)
-    talk = converse(
-        lambda v, e, s: tree_auction(v, s, e, distance), view, Event(0, (0.0, 0.0)), 0
-    )
+    talk = converse(lambda v, e, s: hold(v, s, e, distance), view, Event(0, (0.0, 0.0)), 0)
     assert talk.award.winner == 1
 
 
@@ -109,7 +108,7 @@ def test_a_lost_call_a_lost_bid_and_a_lost_assignment():
 
 
 def alone(view, event, source, metric):
-    return (yield from tree_auction(view, source, event, metric))
+    return (yield from hold(view, source, event, metric))
 
 
 @pytest.mark.parametrize("short", [0.0, 1e-9])

@@ -39,8 +39,31 @@ SHOWCASE = {
         ("right", [12, 11, 9, 5, 9, 8, 7, 10, 3, 4, "destination"]),
         (
             "left",
-            [12, 11, 9, 5, 6, 2, 1, 2, 6, 5, 9, 11, 12, "source", 12, 11, 9, 8, 7, 10, 3, 4]
-            + ["destination"],
+            [
+                12,
+                11,
+                9,
+                5,
+                6,
+                2,
+                1,
+                2,
+                6,
+                5,
+                9,
+                11,
+                12,
+                "source",
+                12,
+                11,
+                9,
+                8,
+                7,
+                10,
+                3,
+                4,
+                "destination",
+            ],
         ),
     ],
 )
@@ -65,7 +88,7 @@ def sparse_networks(count: int, seed: int):
 
 def check_delivery(count: int, seed: int) -> None:
     recovered, degree = 0, []
-    for view, side, rng in sparse_networks(count, seed):
+    for view, _, rng in sparse_networks(count, seed):
         source, destination = rng.choice(100, 2, replace=False).tolist()
         talk = routed(deliver, view, source, destination, view[destination].position)
         assert talk.award == destination

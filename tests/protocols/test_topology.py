@@ -58,7 +58,7 @@ def listed(topology):
 
 
 coordinate = {
-    "anywhere": st.floats(0.0, 10.0),
+    "anywhere": st.floats(0.0, 10.0).map(lambda v: round(v, 9)),  # a nanometre is a place
     "lattice": st.integers(0, 6).map(lambda k: 0.3 * k),
     "three places": st.sampled_from([0.0, 1.0, 2.5]),
 }

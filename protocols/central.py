@@ -1,0 +1,65 @@
+"""What somebody who knew everything would do: bounds and baselines, not protocols to deploy.
+
+They ask any robot at any time and say nothing, so their message counts mean nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from protocols.auctions import offer
+from protocols.messages import Award, Conversation, Event, RobotId, View
+from protocols.metrics import Metric, distance
+from protocols.routing import deliver
+
+
+def optimum(
+    view: View, event: Event, source: RobotId, *, metric: Metric = distance
+) -> Conversation:
+    """The best of all robots by the metric, whoever can afford the trip; nothing is said."""
+    yield from ()
+    bids = [bid for robot in view if (bid := offer(robot, event, metric)) is not None]
+    return Award(min(bids).robot if bids else None, source, tuple(bids))
+
+
+def gfg(view: View, event: Event, source: RobotId) -> Conversation:
+    """Deliver to the nearest able robot by greedy-face-greedy, as if its place were known."""
+    bids = [bid for robot in view if (bid := offer(robot, event, distance)) is not None]
+    if not bids:
+        return Award(None, source)
+    best = min(bids).robot
+    reached = yield from deliver(view, source, best, view[best].position)
+    return Award(best if reached == best else None, reached, tuple(bids))
+
+
+def assign_all(
+    view: View, events: Sequence[Event], metric: Metric = distance
+) -> dict[int, RobotId]:
+    """Robots for several events at once, at the least total cost: event id to robot.
+
+    As many events are served as there are able robots for; of the ways to serve that many,
+    the one whose metric costs add up to least (the assignment problem, solved by the
+    Jonker-Volgenant algorithm of ``scipy.optimize.linear_sum_assignment``).
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    costs: NDArray[np.float64] = np.full((len(events), len(view)), np.inf)
+    for row, event in enumerate(events):
+        for robot in view:
+            bid = offer(robot, event, metric)
+            if bid is not None:
+                costs[row, robot.id] = bid.cost
+    able = np.isfinite(costs)
+    if not able.any():
+        return {}
+    spread = float(np.ptp(costs[able])) + 1.0
+    refused = float(costs[able].max()) + spread * (min(costs.shape) + 1)
+    rows, columns = linear_sum_assignment(np.where(able, costs, refused))
+    return {
+        events[row].id: int(robot)
+        for row, robot in zip(rows.tolist(), columns.tolist(), strict=True)
+        if able[row, robot]
+    }
