@@ -54,10 +54,7 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     intervals = [o.sample_interval for o in observers if o.sample_interval is not None]
     motion = bind_motion(scenario.motion)(scenario.robot, world.arena, min(intervals, default=None))
     solid = MOTIONS[scenario.motion.name].solid
-    points = connected_start(
-        world, scenario.robots, scenario.robot.radius if solid else 0.0, scenario.range,
-        random["placement"],
-    )  # fmt: skip
+    points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     topology = Topology(
         points,
         scenario.range,
@@ -67,7 +64,15 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     radio = IdealRadio(topology)
     headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
     robots = [
-        Robot(id, point, heading, Battery(scenario.robot.capacity), scenario.range, radio.tables, motion)
+        Robot(
+            id,
+            point,
+            heading,
+            Battery(scenario.robot.capacity),
+            scenario.range,
+            radio.tables,
+            motion,
+        )
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
     ]
     motion.place(robots)
@@ -93,27 +98,29 @@ def streams(seed: int) -> dict[str, np.random.Generator]:
     return dict(zip(STREAMS, map(np.random.default_rng, children), strict=True))
 
 
-def connected_start(
-    world: World, count: int, radius: float, radio_range: float, rng: np.random.Generator
-) -> list[Point]:
-    """Places [m] for ``count`` robots of ``radius`` [m] that make a connected network.
+def start(world: World, scenario: Scenario, radius: float, rng: np.random.Generator) -> list[Point]:
+    """Places [m] for the scenario's robots, of ``radius`` [m] each, that make one network.
 
     Raises:
-        ImpossibleWorld: none of :data:`ATTEMPTS` placements was connected.
+        ImpossibleWorld: none of :data:`ATTEMPTS` placements was connected, where it must be.
     """
-    degree = count * pi * radio_range**2 / (world.arena.width * world.arena.height)
+    count = scenario.robots or world.robots
+    degree = count * pi * scenario.range**2 / (world.arena.width * world.arena.height)
     if count * min(degree, count) > MOST_LINKS:
         raise ImpossibleWorld(
             f"robots is {count}; {min(degree, count):.0f} of them within range of each"
             f" are too many links to keep; expected fewer robots or a shorter range"
         )
-    for _ in range(ATTEMPTS):
+    attempts = 1 if world.fixed else ATTEMPTS
+    for _ in range(attempts):
         positions: FloatArray = world.place(world.arena, count, radius, rng)
-        if connected(count, unit_disc(positions, radio_range)):
+        if not scenario.connected or connected(count, unit_disc(positions, scenario.range)):
             return [(x, y) for x, y in positions.tolist()]
+    placements = "the placement" if world.fixed else f"none of {attempts} placements"
+    verb = "is not" if world.fixed else "made"
     raise ImpossibleWorld(
-        f"range is {radio_range} m; none of {ATTEMPTS} placements of {count} robots made a"
-        f" connected network; expected a longer range or more robots"
+        f"range is {scenario.range} m; {placements} of {count} robots {verb} a connected network;"
+        f" expected a longer range, more robots, or connected = false"
     )
 
 

@@ -90,6 +90,34 @@ def scatter(
     )
 
 
+def given(
+    positions: FloatArray, arena: Arena, count: int, radius: float, _rng: np.random.Generator
+) -> FloatArray:
+    """The first ``count`` of these ``positions`` (n, 2) [m], as they are.
+
+    Raises:
+        ImpossibleWorld: there are fewer, or bodies of that radius would not have room there.
+    """
+    if count > len(positions):
+        raise ImpossibleWorld(f"robots is {count}; expected {len(positions)} or fewer, as placed")
+    chosen = positions[:count]
+    size = np.array([arena.width, arena.height])
+    stuck = np.array(((chosen < radius) | (chosen > size - radius)).any(axis=1))
+    for obstacle in arena.obstacles:
+        stuck |= obstacle.distance(chosen) < radius
+    for robot in range(count):
+        gaps = np.hypot(*(chosen[:robot] - chosen[robot]).T)
+        stuck[robot] |= bool((gaps < 2.0 * radius).any())
+    if radius > 0.0 and stuck.any():
+        robot = int(np.argmax(stuck))
+        x, y = chosen[robot].tolist()
+        raise ImpossibleWorld(
+            f"robot {robot} of radius {radius} m has no room at ({x}, {y});"
+            f" expected free places, or motion straight, in which robots are points"
+        )
+    return chosen
+
+
 def _spaced(placed: FloatArray, drawn: FloatArray, count: int, gap: float) -> FloatArray:
     """Add those drawn points that keep ``gap`` [m] from all others, up to ``count``."""
     kept = list(placed)

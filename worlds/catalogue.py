@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from worlds.arena import Arena, FloatArray, scatter
+from worlds.arena import Arena, FloatArray, given, scatter
 from worlds.events import uniform_sites
-from worlds.shapes import Corner, Disc
+from worlds.shapes import Corner, Disc, Polygon, square
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
 
@@ -22,6 +23,8 @@ class World:
     arena: Arena
     place: Callable[[Arena, int, float, np.random.Generator], FloatArray] = scatter
     sites: Callable[[Arena, np.random.Generator], Iterator[Corner]] = uniform_sites
+    robots: int = 100  # unless the scenario asks for another number
+    fixed: bool = False  # whether the robots start in the same places every time
 
 
 class Entry(NamedTuple):
@@ -36,12 +39,40 @@ def random(*, width: float = 10.0, height: float = 10.0) -> World:
     return World(Arena(width, height))
 
 
-def random_hole(*, width: float = 10.0, height: float = 10.0, radius: float = 2.5) -> World:
-    """As random, but no robot starts in a round hole in the middle; events fall there too."""
-    return World(Arena(width, height, hole=Disc(0.5 * width, 0.5 * height, radius)))
+def random_hole(
+    *,
+    width: float = 10.0,
+    height: float = 10.0,
+    shape: Literal["disc", "square"] = "disc",
+    radius: float = 2.5,
+    corners: tuple[Corner, ...] = (),
+) -> World:
+    """As random, but no robot starts in a hole in the middle; events fall there too.
+
+    ``radius`` [m] is that of the disc, or half a side of the square; ``corners`` [m] make a
+    hole of any other shape and place.
+    """
+    x, y = 0.5 * width, 0.5 * height
+    hole = Disc(x, y, radius) if shape == "disc" else square(x, y, radius)
+    return World(Arena(width, height, hole=Polygon(corners) if corners else hole))
+
+
+def placed(*, positions: FloatArray, width: float = 10.0, height: float = 10.0) -> World:
+    """Robots start where a CSV file (columns x, y in metres) puts them; events fall anywhere."""
+    arena = Arena(width, height)
+    inside = (positions >= 0.0) & (positions <= np.array([width, height]))
+    if not inside.all():
+        row = int(np.argmin(inside.all(axis=1)))
+        x, y = positions[row].tolist()
+        raise ValueError(
+            f"robot {row} starts at ({x}, {y});"
+            f" expected a place in the {width} m × {height} m arena"
+        )
+    return World(arena, partial(given, positions), robots=len(positions), fixed=True)
 
 
 WORLDS: dict[str, Entry] = {
+    "placed": Entry(placed, "a file of the user's"),
     "random": Entry(random, PAPER),
     "random-hole": Entry(random_hole, PAPER),
 }

@@ -112,3 +112,10 @@ class Polygon:
         points = np.array(self.corners)
         low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         return (low[0], low[1]), (high[0], high[1])
+
+
+def square(x: float, y: float, half: float) -> Polygon:
+    """The upright square around (x, y) [m] with sides of twice ``half`` [m]."""
+    return Polygon(
+        ((x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half))
+    )

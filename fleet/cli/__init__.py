@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from importlib import import_module
 
 import click
@@ -22,10 +23,12 @@ class LazyGroup(click.Group):
         """All command names, in order."""
         return sorted(COMMANDS)
 
-    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """The command of that name, if there is one."""
+    def get_command(self, ctx: click.Context, name: str) -> click.Command:
+        """The command of that name; a near one is suggested if there is none."""
         if name not in COMMANDS:
-            return None
+            near = get_close_matches(name, COMMANDS, 1, 0.5)
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            ctx.fail(f"No such command {name!r}.{hint}")
         command: click.Command = import_module(COMMANDS[name][0]).command
         return command
 

@@ -12,9 +12,11 @@ from typing import Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from fleet.scenario.errors import BadInput, bad, sentence, unknown
+from fleet.scenario.places import places
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
 from protocols.metrics import Metric
+from worlds.shapes import FloatArray
 
 T = TypeVar("T")
 
@@ -36,6 +38,9 @@ def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> part
             values[name] = convert(accepted[name], value, f"{key}.{name}")
         except BadInput as error:
             problems.extend(error.problems)
+    problems.extend(
+        (f"{key}.{name}", "is missing; it is required") for name in required(function) - set(table)
+    )
     if problems:
         raise BadInput(problems)
     return partial(function, **values)
@@ -47,14 +52,22 @@ def keywords(function: Callable[..., Any]) -> dict[str, Any]:
     return {p.name: p.annotation for p in parameters if p.kind is p.KEYWORD_ONLY}
 
 
+def required(function: Callable[..., Any]) -> set[str]:
+    """The keyword parameters that have no default."""
+    parameters = inspect.signature(function).parameters.values()
+    return {p.name for p in parameters if p.kind is p.KEYWORD_ONLY and p.default is p.empty}
+
+
 def convert(kind: Any, value: Any, key: str) -> Any:
     """``value``, as read from TOML, as a value of type ``kind``.
 
     Raises:
         BadInput: it is not one.
     """
-    if kind is Metric or kind == Metric:
+    if kind == Metric:
         return metric(value, key)
+    if kind == FloatArray:
+        return places(value, key)
     problems = list(_unknown_keys(kind, value, key))
     if not problems:
         try:

@@ -34,10 +34,11 @@ class Scenario:
     protocol: Choice = Choice("rfta2")
     world: Choice = Choice("random")
     motion: Choice = Choice("physics")
-    robots: int = 100
+    robots: int | None = None  # None: as many as the world has, which is 100 as a rule
     range: float = 2.5  # r, of the radio [m]
     search_radius: float = 2.0  # SR [m]
     graph: GraphName = "gabriel"
+    connected: bool = True  # whether the network must be connected at the start
     rounds: int | None = None  # None: a whole network lifetime
     seed: int = 0
     robot: RobotSpec = RobotSpec()

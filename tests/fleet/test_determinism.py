@@ -63,7 +63,7 @@ def test_results_are_those_of_the_last_release(case):
     assert fingerprint(case) == GOLDEN[case]
 
 
-def test_the_seed_decides(case="straight"):
+def test_the_seed_decides():
     runs = [fleet.run(fleet.Scenario.of(motion="straight", rounds=30, seed=s)) for s in (1, 2)]
     assert runs[0].energy_drained != runs[1].energy_drained
 

@@ -120,7 +120,9 @@ def test_physics_drains_more_than_eq_1_predicts():
 
 def test_life_ends_at_the_first_event_that_nobody_takes():
     witness = Witness()
-    summary = fleet.run(fleet.Scenario.of(motion="straight", robots=20, range=5.0, seed=1), [witness])
+    summary = fleet.run(
+        fleet.Scenario.of(motion="straight", robots=20, range=5.0, seed=1), [witness]
+    )
     assert witness.awards[-1].winner is None
     assert all(award.winner is not None for award in witness.awards[:-1])
     assert summary.events == summary.lifetime + 1

@@ -1,0 +1,143 @@
+"""The command line as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from click.testing import CliRunner
+
+from fleet.cli import main
+from fleet.motion.catalogue import MOTIONS
+from fleet.results import Summary
+from protocols.catalogue import METRICS, PROTOCOLS
+from worlds.catalogue import WORLDS
+
+KEYS = [
+    "protocol",
+    "motion",
+    "world",
+    "seed",
+    "robots",
+    "radio_range",
+    "search_radius",
+    "lifetime",
+    "events",
+    "served",
+    "failed",
+    "messages",
+    "messages_per_robot",
+    "messages_by_kind",
+    "hops_greedy",
+    "hops_face",
+    "energy_initial",
+    "energy_predicted",
+    "energy_drained",
+    "energy_left_mean",
+    "energy_left_min",
+    "energy_left_sd",
+    "reactions_per_robot",
+    "distance_per_robot",
+    "path_per_robot",
+    "closest_found",
+    "simulated_time",
+    "wall_time",
+]
+
+
+def fleet(*arguments):
+    return CliRunner().invoke(main, arguments, catch_exceptions=False)
+
+
+def test_json_prints_exactly_the_documented_keys():
+    result = fleet("run", "--motion", "straight", "--rounds", "5", "--json")
+    assert result.exit_code == 0
+    assert list(json.loads(result.stdout)) == KEYS == list(Summary.__dataclass_fields__)
+
+
+def test_every_option_means_its_scenario_key(tmp_path):
+    options = fleet(
+        "run", "--protocol", "gfgf2a", "--world", "random-hole", "--motion", "straight",
+        "--robots", "50", "--range", "3", "--search-radius", "1.5", "--rounds", "6",
+        "--seed", "4", "--set", "world.radius=2.0", "--json",
+    )  # fmt: skip
+    file = tmp_path / "scenario.toml"
+    file.write_text(
+        'protocol = "gfgf2a"\nmotion = "straight"\nrobots = 50\nrange = 3.0\n'
+        'search_radius = 1.5\nrounds = 6\nseed = 4\n[world]\nname = "random-hole"\nradius = 2.0\n'
+    )
+    by_file = json.loads(fleet("run", str(file), "--json").stdout)
+    by_options = json.loads(options.stdout)
+    del by_file["wall_time"], by_options["wall_time"]
+    assert by_file == by_options
+
+
+def test_the_table_names_units():
+    result = fleet("run", "--motion", "straight", "--rounds", "5")
+    assert "5 rounds" in result.stdout
+    assert "J by Eq. (1)" in result.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--protocol", "nobody"],
+        ["--range", "0.2"],
+        ["--robots", "-3"],
+        ["nowhere.toml"],
+        ["--set", "robot.mass=heavy"],
+        ["--rounds", "many"],
+        ["--world", "placed"],
+    ],
+    ids=" ".join,
+)
+def test_bad_input_is_one_sentence_and_exit_code_2(arguments):
+    result = fleet("run", "--motion", "straight", *arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.strip()
+    assert "Traceback" not in result.stderr
+
+
+def test_list_names_everything_with_its_source():
+    listed = fleet("list").stdout
+    for catalogue in (PROTOCOLS, METRICS, WORLDS, MOTIONS):
+        for name in catalogue:
+            assert f" {name} " in listed
+
+
+def test_unknown_commands_and_options_are_met_with_a_hint():
+    assert fleet("rum").exit_code == 2
+    assert "did you mean" in fleet("rum").stderr.lower()
+    assert fleet("run", "--sead", "3").exit_code == 2
+
+
+HEAVY = ("numba", "scipy", "pymunk", "rerun", "matplotlib", "pydantic", "numpy", "rich", "pyarrow")
+
+
+def test_help_loads_nothing_heavy():
+    script = (
+        "import sys; sys.argv = ['fleet', '--help']\n"
+        "from fleet.cli import main\n"
+        "try: main()\nexcept SystemExit: pass\n"
+        f"print('LOADED', [m for m in {HEAVY} if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert "LOADED []" in done.stdout
+    assert "Commands:" in done.stdout
+
+
+def test_a_straight_run_of_a_small_fleet_does_not_wait_for_the_compiler():
+    script = (
+        "import sys, fleet\n"
+        "fleet.run(fleet.Scenario.of(motion='straight', rounds=3))\n"
+        "print([m for m in ('numba', 'pymunk', 'rerun', 'matplotlib') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
