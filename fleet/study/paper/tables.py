@@ -1,0 +1,67 @@
+"""Tables 2 and 3 beside the paper's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fleet.study.paper.published import IMPOSSIBLE, PROTOCOLS, ROWS, TABLES, Cell, Row
+from fleet.study.paper.results import Results
+
+TWO_SR = 2.0  # the tables' search radius [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A cell of a table: printed, measured, and how far apart."""
+
+    row: Row
+    protocol: str
+    paper: Cell
+    measured: Cell
+    difference: float | None  # measured − printed, in pooled standard deviations
+    impossible: str  # why the printed value cannot be, or nothing
+
+
+def compare(results: Results, world: str) -> list[Comparison]:
+    """Table 2 (``random``) or Table 3 (``random-hole``), pooled over all ranges, row by row.
+
+    The messages of RFTA2GE are compared with aggregated bids, which is nearer to the paper's.
+    """
+    compared = []
+    for row in ROWS:
+        for protocol in PROTOCOLS:
+            series = protocol
+            if protocol == "rfta2ge" and row.key == "messages_per_robot":
+                series = "rfta2ge-aggregated"
+            runs = results.where(series=series, world=world, search_radius=TWO_SR)
+            paper = TABLES[world][protocol][row.key]
+            measured = pooled(runs, row)
+            compared.append(
+                Comparison(
+                    row,
+                    protocol,
+                    paper,
+                    measured,
+                    difference(paper, measured),
+                    IMPOSSIBLE.get((world, protocol, row.key), ""),
+                )
+            )
+    return compared
+
+
+def pooled(runs: Results, row: Row) -> Cell:
+    """Mean and standard deviation over all runs."""
+    values = runs.values(row.key) * row.scale
+    if len(values) < 2:
+        return Cell(float("nan"), float("nan"))
+    return Cell(float(np.mean(values)), float(np.std(values, ddof=1)))
+
+
+def difference(paper: Cell, measured: Cell) -> float | None:
+    """How far the means are apart in pooled standard deviations, where the paper gives one."""
+    if paper.sd is None or measured.sd is None:
+        return None
+    sd = np.sqrt((paper.sd**2 + measured.sd**2) / 2.0)
+    return float((measured.mean - paper.mean) / sd)
