@@ -14,7 +14,7 @@ from fleet.observer import Observer
 from fleet.radio import IdealRadio
 from fleet.results import Summary
 from fleet.robot import Robot
-from fleet.scenario.choices import bind_motion, bind_protocol, make_world
+from fleet.scenario.choices import bind_protocol, make_motion, make_world
 from fleet.scenario.model import Scenario
 from fleet.simulation import Fleet, Labels, Simulation
 from protocols.links import connected, unit_disc
@@ -52,7 +52,8 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     protocol = bind_protocol(scenario)
     world = make_world(scenario.world)
     intervals = [o.sample_interval for o in observers if o.sample_interval is not None]
-    motion = bind_motion(scenario.motion)(scenario.robot, world.arena, min(intervals, default=None))
+    interval = min(intervals, default=None)
+    motion = make_motion(scenario.motion, scenario.robot, world.arena, interval)
     solid = MOTIONS[scenario.motion.name].solid
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     topology = Topology(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,26 @@ class PowerModel:
     def per_metre(self, speed: float) -> float:
         """The energy of one metre at a constant ``speed`` [m/s]: P(v)/v [J/m], Eq. (1)."""
         return self.quadratic * speed + self.linear + self.constant / speed
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraPower:
+    """What the paper leaves out; all off by default.
+
+    Raises:
+        ValueError: a value is negative.
+    """
+
+    kinetic: bool = False  # pay the kinetic energy of every launch and get none of it back
+    per_wheel: bool = False  # each wheel takes half of P at its own speed, not at the body's
+    idle: float = 0.0  # [W] of a robot that stands: parked, or waiting to set off
+    transmission: float = 0.0  # [J] for each frame sent; charged by the simulation
+
+    def __post_init__(self) -> None:
+        for name in ("idle", "transmission"):
+            value = getattr(self, name)
+            if not 0.0 <= value < inf:
+                raise ValueError(f"{name} power is {value}; expected 0 or more")
 
 
 class Battery:

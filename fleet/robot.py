@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf, pi
-from typing import Protocol
+from typing import Literal, Protocol
 
-from fleet.energy import Battery, PowerModel
+from fleet.energy import Battery, ExtraPower, PowerModel
 from protocols.messages import Point, RobotId
 
 
@@ -21,12 +21,16 @@ class RobotSpec:
 
     radius: float = 0.1  # [m]
     mass: float = 9.0  # [kg]
+    drive: Literal["differential", "holonomic"] = "differential"
+    reverse: bool = False  # drives backwards where that saves turning
     cruise: float = 0.76  # [m/s] the paper's speed, near the cheapest for its power model
     acceleration: float = 1.0  # [m/s²] both ways
     turn_rate: float = 1.6667 * pi  # [rad/s]
-    turn_acceleration: float = 1.6667 * pi  # [rad/s²]
+    turn_acceleration: float = 1.6667 * pi  # [rad/s²] turning on the spot
+    track: float | None = None  # [m] from wheel to wheel; None: 1.5 radii
     capacity: float = 100.0  # [J] of the battery, full at the start
     power: PowerModel = field(default_factory=PowerModel)
+    extra: ExtraPower = field(default_factory=ExtraPower)
 
     def __post_init__(self) -> None:
         for name in (
@@ -35,9 +39,39 @@ class RobotSpec:
             value = getattr(self, name)
             if not 0.0 < value < inf:
                 raise ValueError(f"robot {name} is {value}; expected more than 0")
+        if self.drive not in ("differential", "holonomic"):
+            raise ValueError(
+                f"robot drive is {self.drive!r}; expected 'differential' or 'holonomic'"
+            )
+        if self.track is not None and not 0.0 < self.track <= 2.0 * self.radius:
+            raise ValueError(
+                f"robot track is {self.track}; expected more than 0, at most {2.0 * self.radius}"
+            )
+
+    @property
+    def wheel_track(self) -> float:
+        """From wheel to wheel [m]; by default as on the e-puck, 53 mm at a radius of 35 mm."""
+        return 1.5 * self.radius if self.track is None else self.track
 
 
-PRESETS: dict[str, RobotSpec] = {"small": RobotSpec()}
+PRESETS: dict[str, RobotSpec] = {
+    # The paper's arena at its density of robots: 100 discs of 0.1 m cover 3 % of 10 m × 10 m.
+    "small": RobotSpec(),
+    # Pioneer 3-DX. Radius 250 mm: its parameter file in ARIA, p3dx.p. Mass 9 kg and turn rate
+    # 300 °/s: the maker's data sheet. Acceleration 300 mm/s² and 100 °/s²: TRANSACC and ROTACC
+    # as shipped, Pioneer 3 Operations Manual (2007). Track 330 mm: CoppeliaSim's model of it.
+    # Cruise and power: the paper's.
+    "pioneer": RobotSpec(
+        radius=0.25,
+        mass=9.0,
+        acceleration=0.3,
+        turn_rate=300.0 * pi / 180.0,
+        turn_acceleration=100.0 * pi / 180.0,
+        track=0.33,
+    ),
+    # The paper's limit, with a body: Eq. (1) holds but for detours. No robot is built like this.
+    "ideal": RobotSpec(drive="holonomic", acceleration=1e4, turn_rate=1e4, turn_acceleration=1e6),
+}
 """Robots by name, for scenario files."""
 
 

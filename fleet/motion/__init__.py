@@ -17,17 +17,31 @@ Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
 
 @dataclass(frozen=True, slots=True)
 class Trip:
-    """One robot's drive to one site, from departure to the end, whatever the end."""
+    """One robot's drive to one site, from departure to the end, whatever the end.
+
+    The last five split up ``energy``; they add up to it. Motion that only knows Eq. (1) leaves
+    them, and all that it has no notion of, at 0.
+    """
 
     robot: RobotId
     outcome: Outcome
     origin: Point  # [m]
     site: Point  # where it was sent [m]
     end: Point  # where it came to rest [m]
-    departed: float  # [s]
+    departed: float  # [s] when it was sent
     ended: float  # [s]
     path: float  # driven length [m]
     energy: float  # drained on the way [J]
+    planned: float = 0.0  # length of the path that was planned when it was sent [m]
+    offset: float = 0.0  # from the site to the end of that path: it is covered by something [m]
+    waited: float = 0.0  # before it could set off, and for others on the way [s]
+    steps: int = 0  # of simulation in which it was driven
+    contacts: int = 0  # times that it was pushed by another body, or pushed one
+    energy_path: float = 0.0  # Eq. (1) on the driven length [J]
+    energy_ramps: float = 0.0  # what driving took beyond that: slower, or speeding up [J]
+    energy_pivots: float = 0.0  # turning on the spot [J]
+    energy_waiting: float = 0.0  # idle power while it waited [J]
+    energy_contact: float = 0.0  # beyond Eq. (1) while it was off its path after a push [J]
 
 
 SAMPLE_FIELDS = ("robot", "time", "x", "y", "heading", "energy")

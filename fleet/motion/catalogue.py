@@ -3,27 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from fleet.motion import Motion
+from fleet.motion.options import DriveOptions
 from fleet.motion.straight import StraightMotion
 from fleet.robot import RobotSpec
 from worlds.arena import Arena
 
 
-class Entry(NamedTuple):
-    """A function that makes a motion, and whether its robots have bodies that need room."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NoOptions:
+    """Nothing to choose."""
 
-    function: Callable[..., Motion]  # spec, arena, sample interval [s]; parameters by keyword
+
+class Entry(NamedTuple):
+    """A way to go: how it is made, what can be chosen, and whether robots need room."""
+
+    function: Callable[..., Motion]  # spec, arena, options, sample interval [s]
+    options: type[Any]
     solid: bool
     source: str
 
 
-def straight(spec: RobotSpec, _arena: Arena, sample_interval: float | None) -> Motion:
+def straight(
+    spec: RobotSpec, _arena: Arena, _options: NoOptions, sample_interval: float | None
+) -> Motion:
     """Straight to the event at cruise speed, through everything: Eq. (1) exactly."""
     return StraightMotion(spec, sample_interval)
 
 
+def path(
+    spec: RobotSpec, arena: Arena, options: DriveOptions, sample_interval: float | None
+) -> Motion:
+    """Shortest paths around others, turning, accelerating and braking; nothing ever touches."""
+    from fleet.motion.driven import DrivenMotion
+
+    return DrivenMotion(spec, arena, options, engine=False, sample_interval=sample_interval)
+
+
+def physics(
+    spec: RobotSpec, arena: Arena, options: DriveOptions, sample_interval: float | None
+) -> Motion:
+    """As path, but pymunk steps the bodies, so that they can touch and push."""
+    from fleet.motion.driven import DrivenMotion
+
+    return DrivenMotion(spec, arena, options, engine=True, sample_interval=sample_interval)
+
+
+PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
+
 MOTIONS: dict[str, Entry] = {
-    "straight": Entry(straight, False, "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"),
+    "path": Entry(path, DriveOptions, True, "tangent graph: exact; drive: trapezoidal profile"),
+    "physics": Entry(physics, DriveOptions, True, "Munk2D through pymunk"),
+    "straight": Entry(straight, NoOptions, False, PAPER),
 }

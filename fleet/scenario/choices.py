@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from fleet.motion import Motion
 from fleet.motion.catalogue import MOTIONS
+from fleet.robot import RobotSpec
 from fleet.scenario.binding import bind, build, keywords
 from fleet.scenario.errors import bad, unknown
 from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import PROTOCOLS
 from protocols.messages import Conversation, ProtocolFunction
+from worlds.arena import Arena
 from worlds.catalogue import WORLDS, World
 
 
@@ -23,7 +26,7 @@ def check(scenario: Scenario) -> None:
     """
     bind_protocol(scenario)
     make_world(scenario.world)
-    bind_motion(scenario.motion)
+    motion_options(scenario.motion)
 
 
 def bind_protocol(scenario: Scenario) -> ProtocolFunction:
@@ -61,12 +64,27 @@ def make_world(choice: Choice) -> World:
     return build(WORLDS[choice.name].function, choice.parameters, "world")
 
 
-def bind_motion(choice: Choice) -> Callable[..., Motion]:
-    """The motion of that name: to be called with robot, arena and sample interval.
+def make_motion(
+    choice: Choice, spec: RobotSpec, arena: Arena, sample_interval: float | None
+) -> Motion:
+    """The motion of that name, with its parameters.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    options = motion_options(choice)
+    try:
+        return MOTIONS[choice.name].function(spec, arena, options, sample_interval)
+    except ValueError as error:
+        raise bad("motion", str(error)) from error
+
+
+def motion_options(choice: Choice) -> Any:
+    """The parameters of the motion of that name.
 
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
     if choice.name not in MOTIONS:
         raise bad("motion", unknown("motion", choice.name, MOTIONS))
-    return bind(MOTIONS[choice.name].function, choice.parameters, "motion")
+    return build(MOTIONS[choice.name].options, choice.parameters, "motion")

@@ -1,0 +1,203 @@
+"""The bridge from compiled loops to Chipmunk, the C library inside pymunk.
+
+pymunk's public interface costs about 12 µs for each robot and step. The functions here are
+called from compiled code by their addresses; bodies are read and written through the functions
+that pymunk itself uses for batches, so nothing is assumed about how Chipmunk lays out its
+structures. Both are reached through pymunk's private cffi module: if that is not as expected,
+:func:`connect` says so, and the engine falls back on the public interface.
+
+Importing this module loads numba, but not pymunk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+from fleet.motion.kernels.records import Wires
+from protocols.compiled import kernel
+
+if TYPE_CHECKING:
+    import pymunk
+
+SIGNATURES = {
+    "cpSpaceStep": "void(*)(struct cpSpace *, double)",
+    "pmSpaceBodyGetIteratorFuncBatched": "void(*)(struct cpBody *, void *)",
+    "pmSpaceBodySetIteratorFuncBatched": "void(*)(struct cpBody *, void *)",
+    "cpBodySetType": "void(*)(struct cpBody *, enum cpBodyType)",
+}
+"""What is called, in the order of the first places in ``Wires.calls``."""
+
+STEP, READ, WRITE, SET_TYPE, SPACE, HEARD, TOLD = range(7)
+"""Places in ``Wires.calls``."""
+
+DYNAMIC = 0  # cpBodyType of a body that moves
+ROOM = 8  # numbers in a buffer
+
+
+class NoBridge(RuntimeError):
+    """pymunk is not built the way the bridge knows."""
+
+
+def _caller(*arguments: tuple[Any, Any]) -> Any:
+    """An intrinsic that calls the C function at an address with ``arguments``: their numba and
+    LLVM types. It returns nothing."""
+    signature = types.void(types.int64, *(numba_type for numba_type, _ in arguments))
+    function_type = ir.FunctionType(ir.VoidType(), [llvm_type for _, llvm_type in arguments])
+
+    def generate(context: Any, builder: Any, _signature: Any, values: Sequence[Any]) -> Any:
+        builder.call(builder.inttoptr(values[0], function_type.as_pointer()), values[1:])
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+_POINTER = (types.int64, ir.IntType(64))
+_DOUBLE = (types.float64, ir.DoubleType())
+_INT = (types.int32, ir.IntType(32))
+
+
+@intrinsic
+def _call_step(typing: Any, function: Any, space: Any, dt: Any) -> Any:
+    """``void f(cpSpace *, double)``."""
+    return _caller(_POINTER, _DOUBLE)
+
+
+@intrinsic
+def _call_on_body(typing: Any, function: Any, body: Any, data: Any) -> Any:
+    """``void f(cpBody *, void *)``."""
+    return _caller(_POINTER, _POINTER)
+
+
+@intrinsic
+def _call_set_type(typing: Any, function: Any, body: Any, kind: Any) -> Any:
+    """``void f(cpBody *, int)``."""
+    return _caller(_POINTER, _INT)
+
+
+@kernel
+def step_space(calls: Any, dt: Any) -> None:
+    """Let the space step by ``dt`` [s]."""
+    _call_step(calls[STEP], calls[SPACE], dt)
+
+
+@kernel
+def wake_body(calls: Any, body: Any) -> None:
+    """Make a parked body one that moves."""
+    _call_set_type(calls[SET_TYPE], body, np.int32(DYNAMIC))
+
+
+@kernel
+def write_body(
+    calls: Any, body: Any, numbers: Any, counts: Any, vx: Any, vy: Any, spin: Any
+) -> None:
+    """Set a body's velocity [m/s] and turn rate [rad/s]."""
+    numbers[0], numbers[1], numbers[2] = vx, vy, spin
+    counts[0] = 0
+    _call_on_body(calls[WRITE], body, calls[TOLD])
+
+
+@kernel
+def read_body(calls: Any, body: Any, counts: Any) -> None:
+    """Read into ``numbers`` a body's x, y [m], heading [rad], and velocity in x and y [m/s]."""
+    counts[0] = 0
+    _call_on_body(calls[READ], body, calls[HEARD])
+
+
+@kernel
+def _drive_alone(wires: Any, vx: Any, vy: Any, spin: Any, dt: Any) -> None:
+    wake_body(wires.calls, wires.bodies[0])
+    write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, vx, vy, spin)
+    step_space(wires.calls, dt)
+    read_body(wires.calls, wires.bodies[0], wires.counts)
+
+
+def disconnected() -> Wires:
+    """The wires of a world without an engine."""
+    return Wires(
+        np.zeros(7, np.int64), np.zeros(1, np.int64), np.zeros(ROOM), np.zeros(1, np.int32)
+    )
+
+
+def connect(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> tuple[Wires, object]:
+    """The wires to a space and its bodies, and an object to keep for as long as they are used.
+
+    Raises:
+        NoBridge: pymunk lacks something that is needed, or has it otherwise.
+    """
+    ffi, lib = _private_module()
+    try:
+        _check_signatures(ffi, lib)
+        numbers = np.zeros(ROOM)
+        floats, ints = ffi.new("pmFloatArray *"), ffi.new("pmIntArray *")
+        array = ffi.from_buffer("double[]", numbers)
+        floats.num, floats.max, floats.arr = 0, ROOM, array
+        heard, told = ffi.new("pmBatchedData *"), ffi.new("pmBatchedData *")
+        heard.fields = lib.POSITION | lib.ANGLE | lib.VELOCITY
+        told.fields = lib.VELOCITY | lib.ANGULAR_VELOCITY
+        heard.floatArray = told.floatArray = floats
+        heard.intArray = told.intArray = ints
+        calls = [_address(ffi, ffi.addressof(lib, name)) for name in SIGNATURES]
+        calls += [_address(ffi, part) for part in (space._space, heard, told)]
+        pointers = [_address(ffi, body._body) for body in bodies]
+    except (AttributeError, TypeError, ffi.error) as error:
+        raise NoBridge(f"pymunk has changed inside: {error}") from error
+    counts = np.frombuffer(ffi.buffer(floats, ffi.sizeof("int")), np.int32)
+    wires = Wires(np.array(calls, np.int64), np.array(pointers, np.int64), numbers, counts)
+    return wires, (space, bodies, floats, ints, array, heard, told)
+
+
+def _private_module() -> tuple[Any, Any]:
+    try:
+        from pymunk._chipmunk_cffi import ffi, lib
+    except ImportError as error:
+        raise NoBridge(f"pymunk has no cffi module: {error}") from error
+    return ffi, lib
+
+
+def _check_signatures(ffi: Any, lib: Any) -> None:
+    for name, signature in SIGNATURES.items():
+        found = ffi.typeof(ffi.addressof(lib, name)).cname
+        if found != signature:
+            raise NoBridge(f"pymunk's {name} is {found}; expected {signature}")
+    if (lib.CP_BODY_TYPE_DYNAMIC, ffi.sizeof("enum cpBodyType")) != (DYNAMIC, 4):
+        raise NoBridge("pymunk numbers its body types in another way")
+
+
+def _address(ffi: Any, of: Any) -> int:
+    return int(ffi.cast("uintptr_t", of))
+
+
+@cache
+def trusted() -> bool:
+    """Whether a step over the bridge does, bit for bit, what the public interface does."""
+    import pymunk
+
+    def world() -> tuple[pymunk.Space, pymunk.Body]:
+        space = pymunk.Space()
+        body = pymunk.Body(body_type=pymunk.Body.STATIC)
+        body.position, body.angle = (1.25, -0.5), 0.75
+        circle = pymunk.Circle(body, 0.1)
+        circle.mass = 9.0
+        space.add(body, circle)
+        return space, body
+
+    speed, spin, dt = (0.3, 0.7), 1.1, 1.0 / 60.0
+    space, body = world()
+    body.body_type = pymunk.Body.DYNAMIC
+    body.velocity, body.angular_velocity = speed, spin
+    space.step(dt)
+    expected = (*body.position, body.angle, *body.velocity)
+    space, body = world()
+    try:
+        wires, _kept = connect(space, [body])
+    except NoBridge:
+        return False
+    _drive_alone(wires, *speed, spin, dt)
+    return tuple(wires.numbers[: len(expected)].tolist()) == expected

@@ -1,0 +1,144 @@
+"""Finding back to the path after a push.
+
+A robot that has been pushed steers towards its path by feedback on its offset and heading. It
+changes the velocity that the engine left it with by no more than its acceleration allows:
+commanding speed regardless would press bodies into each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fleet.motion.kernels.geometry import wrapped
+from fleet.motion.kernels.profile import heading_at
+from fleet.motion.kernels.records import ARC, ARRIVED, EMPTY, LINE, LOST
+from protocols.compiled import kernel
+
+REACH = 0.2  # [m] on which offsets decay
+LATERAL = 2.0  # [1/s] by which a holonomic robot reduces its offset
+FACE = 1.2  # [rad] facing further away than this, it stops and turns
+FACED = 0.05  # [rad] until it faces the path like this
+ON_PATH = 1e-4  # [m] within this, and ten times as much in [rad], it is back
+THERE = 1e-3  # [m] from the goal it has arrived
+PROGRESS = 0.005  # [m] that it must gain
+PATIENCE = 1.0  # [s] in which it must
+ASTRAY = 0.15  # [m] off the path it gives up
+
+
+@kernel
+def _project(piece, x, y):
+    """Where on a piece of path (x, y) [m] is: (how far along, how far to the left) [m]."""
+    if piece.kind == LINE:
+        dx, dy = x - piece.x, y - piece.y
+        return dx * piece.cos + dy * piece.sin, dy * piece.cos - dx * piece.sin
+    dx, dy = x - piece.x, y - piece.y
+    half = 0.5 * piece.length / piece.radius
+    ahead = wrapped(piece.sense * (math.atan2(dy, dx) - piece.angle) - half) + half
+    return piece.radius * ahead, piece.sense * (piece.radius - math.hypot(dx, dy))
+
+
+@kernel
+def _locate(mover, pieces):
+    """Find the piece that ``mover`` is on: (how far along, how far to the left, to go) [m]."""
+    mover.piece = max(mover.piece, 1)
+    along, left = _project(pieces[mover.slot, mover.piece], mover.x, mover.y)
+    while along >= pieces[mover.slot, mover.piece].length and mover.piece + 1 < mover.count:
+        mover.piece += 1
+        along, left = _project(pieces[mover.slot, mover.piece], mover.x, mover.y)
+    to_go = pieces[mover.slot, mover.piece].length - along
+    for k in range(mover.piece + 1, mover.count):
+        to_go += pieces[mover.slot, k].length
+    return along, left, to_go
+
+
+@kernel
+def _spin_towards(mover, error, law):
+    """The turn rate [rad/s] that takes the heading error [rad] away, braking in time."""
+    ease = law.turn_acceleration * law.dt
+    if abs(error) <= ease * law.dt and abs(mover.spin) <= ease:
+        return -error / law.dt
+    fast = min(law.turn_rate, math.sqrt(2.0 * law.turn_acceleration * abs(error)))
+    return min(max(-math.copysign(fast, error), mover.spin - ease), mover.spin + ease)
+
+
+@kernel
+def _steer(mover, piece, left, error, speed, law):
+    """The turn rate [rad/s] that follows the path at ``speed`` [m/s] and leads back to it."""
+    bend = piece.sense / piece.radius if piece.kind == ARC else 0.0
+    pull = 1.0 if abs(error) < 1e-6 else math.sin(error) / error
+    spin = speed * (bend - pull * left / (REACH * REACH) - 2.0 * error / REACH)
+    return min(max(spin, -law.turn_rate), law.turn_rate)
+
+
+@kernel
+def _wish(mover, piece, along, left, to_go, law):
+    """The velocity [m/s] and turn rate [rad/s] that it would like: (vx, vy, spin)."""
+    path = heading_at(piece, min(max(along, 0.0), piece.length))
+    facing = path if law.holonomic else mover.heading + mover.astern
+    speed = max(0.0, mover.ux * math.cos(facing) + mover.uy * math.sin(facing))
+    speed = min(speed + law.acceleration * law.dt, piece.limit)
+    speed = min(speed, math.sqrt(2.0 * law.acceleration * max(to_go, 0.0)))
+    speed = min(speed, max(to_go, 0.0) / law.dt)
+    if law.holonomic:
+        side = -LATERAL * left
+        return (
+            speed * math.cos(path) - side * math.sin(path),
+            speed * math.sin(path) + side * math.cos(path),
+            0.0,
+        )
+    error = wrapped(facing - path)
+    if abs(error) > FACE and to_go > THERE:
+        mover.adrift = 2
+    elif abs(error) < FACED:
+        mover.adrift = 1
+    if mover.adrift == 2:
+        return 0.0, 0.0, _spin_towards(mover, error, law)
+    spin = _steer(mover, piece, left, error, speed, law)
+    middle = facing + 0.5 * spin * law.dt
+    return speed * math.cos(middle), speed * math.sin(middle), spin
+
+
+@kernel
+def _pay(mover, law):
+    """Drain what a step at the commanded velocity takes."""
+    square = mover.vx * mover.vx + mover.vy * mover.vy
+    speed = math.sqrt(square)
+    energy = (law.quadratic * square + law.linear * speed + law.constant) * law.dt
+    if law.kinetic:
+        gained = square - mover.ux * mover.ux - mover.uy * mover.uy
+        energy += 0.5 * law.mass * max(0.0, gained)
+    if energy > mover.charge:
+        energy, mover.phase = mover.charge, EMPTY
+    mover.charge -= energy
+    mover.spent += energy
+    mover.spent_adrift += energy
+    mover.path += speed * law.dt
+    mover.jostled += speed * law.dt
+
+
+@kernel
+def recover(mover, pieces, law):
+    """Command a step of a robot that is off its path; it may end the trip, or the drift."""
+    along, left, to_go = _locate(mover, pieces)
+    piece = pieces[mover.slot, mover.piece]
+    if to_go < mover.best - PROGRESS or mover.adrift == 2:
+        mover.best, mover.since = min(to_go, mover.best), 0
+    mover.since += 1
+    vx, vy, spin = _wish(mover, piece, along, left, to_go, law)
+    dx, dy = vx - mover.ux, vy - mover.uy
+    change = math.hypot(dx, dy)
+    ease = min(1.0, law.acceleration * law.dt / change) if change > 0.0 else 1.0
+    mover.vx, mover.vy, mover.spin = mover.ux + ease * dx, mover.uy + ease * dy, spin
+    _pay(mover, law)
+    speed = math.hypot(mover.vx, mover.vy)
+    if mover.phase == EMPTY:
+        return
+    if to_go <= THERE and speed <= 2.0 * law.acceleration * law.dt:
+        mover.phase = ARRIVED if abs(left) <= 10.0 * THERE else LOST
+    elif abs(left) > ASTRAY or mover.since * law.dt > PATIENCE:
+        mover.phase = LOST
+    elif abs(left) <= ON_PATH and ease == 1.0 and not mover.touching:
+        path = heading_at(piece, min(max(along, 0.0), piece.length))
+        error = 0.0 if law.holonomic else wrapped(mover.heading + mover.astern - path)
+        if abs(error) <= 10.0 * ON_PATH and 0.0 <= along < piece.length:
+            mover.adrift, mover.along, mover.speed = 0, along + speed * law.dt, speed

@@ -1,0 +1,158 @@
+"""Driving one robot along its path.
+
+In each step a robot goes through one or more stretches: speeding up, keeping its speed, braking.
+A stretch ends when its speed, its way or the step does, whatever comes first; speed changes
+linearly in it, and distance and energy are exact integrals over it. So where the robot is at the
+end of a step and what it has drained do not depend on the steps.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fleet.motion.kernels.geometry import wrapped
+from fleet.motion.kernels.profile import heading_at
+from fleet.motion.kernels.records import ARC, ARRIVED, EMPTY, LINE, TURN
+from protocols.compiled import kernel
+
+NEAR = 1e-12  # [m], [rad], [s] that count as none
+
+
+@kernel
+def _stretch(piece, along, speed):
+    """The next stretch on a piece: (final speed, duration [s], how far it leads [m or rad]).
+
+    ``left`` is what there is to go on the piece. Speeding up all the way would end with the
+    square of the speed ``most`` higher; if that is more than the exit speed allows, speeding up
+    must end halfway between the squares of both.
+    """
+    left = piece.length - along
+    to_exit = 0.5 * (speed * speed - piece.exit * piece.exit) / piece.rate
+    if to_exit >= left - NEAR:
+        last = piece.exit
+        if to_exit > left + NEAR:  # it is too fast for what comes
+            last = math.sqrt(max(0.0, speed * speed - 2.0 * piece.rate * left))
+        return last, (speed - last) / piece.rate, left
+    if speed > piece.limit:
+        far = 0.5 * (speed * speed - piece.limit * piece.limit) / piece.rate
+        return piece.limit, (speed - piece.limit) / piece.rate, min(far, left)
+    if speed == piece.limit:
+        return speed, (left - to_exit) / speed, left - to_exit
+    most = speed * speed + 2.0 * piece.rate * left
+    square = min(most, 0.5 * (most + piece.exit * piece.exit))
+    if square > piece.limit * piece.limit:
+        last = piece.limit
+        far = 0.5 * (last * last - speed * speed) / piece.rate
+    else:
+        last = math.sqrt(square)
+        far = left if square == most else 0.5 * (square - speed * speed) / piece.rate
+    return last, (last - speed) / piece.rate, far
+
+
+@kernel
+def _energy(piece, speed, last, time):
+    """What a stretch of ``time`` [s] drains [J]: the integral of the power, and kinetic energy."""
+    square = (speed * speed + speed * last + last * last) / 3.0
+    power = piece.quadratic * square + piece.linear * 0.5 * (speed + last) + piece.constant
+    return power * time + 0.5 * piece.inertia * max(0.0, last * last - speed * speed)
+
+
+@kernel
+def _lasting(piece, speed, last, time, charge):
+    """After what share of a stretch the ``charge`` [J] is used up."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        share = 0.5 * (low + high)
+        if _energy(piece, speed, speed + share * (last - speed), share * time) > charge:
+            high = share
+        else:
+            low = share
+    return low
+
+
+@kernel
+def _pay(mover, piece, energy):
+    mover.charge -= energy
+    mover.spent += energy
+    if piece.kind == TURN:
+        mover.spent_turning += energy
+
+
+@kernel
+def _go_on(mover, pieces, time):
+    """Move ``mover`` along its path for ``time`` [s], and drain it."""
+    while time > NEAR:
+        piece = pieces[mover.slot, mover.piece]
+        if piece.length - mover.along <= NEAR:
+            if mover.piece + 1 == mover.count:
+                mover.phase, mover.speed = ARRIVED, 0.0
+                return
+            mover.piece += 1
+            mover.along = 0.0
+            continue
+        last, lasts, far = _stretch(piece, mover.along, mover.speed)
+        if lasts > time:
+            last = mover.speed + time / lasts * (last - mover.speed)
+            lasts, far = time, 0.5 * (mover.speed + last) * time
+        energy = _energy(piece, mover.speed, last, lasts)
+        if energy > mover.charge:
+            share = _lasting(piece, mover.speed, last, lasts, mover.charge)
+            last = mover.speed + share * (last - mover.speed)
+            far = 0.5 * (mover.speed + last) * share * lasts
+            energy, mover.phase = mover.charge, EMPTY
+        _pay(mover, piece, energy)
+        mover.along += far
+        if piece.kind != TURN:
+            mover.path += far
+        if mover.phase == EMPTY:
+            mover.charge, mover.speed = 0.0, 0.0
+            return
+        mover.speed = last
+        time -= lasts
+    if mover.piece + 1 == mover.count:
+        if pieces[mover.slot, mover.piece].length - mover.along <= NEAR:
+            mover.phase, mover.speed = ARRIVED, 0.0
+
+
+@kernel
+def position_at(piece, along):
+    """The point [m] of a piece of path that is ``along`` [m or rad] from its start."""
+    if piece.kind == LINE:
+        return piece.x + along * piece.cos, piece.y + along * piece.sin
+    if piece.kind == ARC:
+        angle = piece.angle + piece.sense * along / piece.radius
+        return piece.x + piece.radius * math.cos(angle), piece.y + piece.radius * math.sin(angle)
+    return piece.x, piece.y
+
+
+@kernel
+def drive(mover, pieces, law, dt):
+    """Let ``mover`` go on for ``dt`` [s], and command the mean velocity that takes it there."""
+    _go_on(mover, pieces, dt)
+    piece = pieces[mover.slot, mover.piece]
+    x, y = position_at(piece, mover.along)
+    mover.vx, mover.vy, mover.spin = (x - mover.x) / dt, (y - mover.y) / dt, 0.0
+    if not law.holonomic:
+        facing = heading_at(piece, mover.along) - mover.astern
+        mover.spin = wrapped(facing - mover.heading) / dt
+
+
+@kernel
+def coast(mover, dt):
+    """Move for ``dt`` [s] as commanded, with nothing in the way: what the engine does."""
+    mover.x += mover.vx * dt
+    mover.y += mover.vy * dt
+    mover.heading += mover.spin * dt
+    mover.ux, mover.uy = mover.vx, mover.vy
+
+
+@kernel
+def wait(mover, law):
+    """Let ``mover`` stand for a step; it may cost idle power."""
+    mover.waited += 1
+    energy = law.idle * law.dt
+    if energy > mover.charge:
+        energy, mover.phase = mover.charge, EMPTY
+    mover.charge -= energy
+    mover.spent += energy
+    mover.spent_waiting += energy

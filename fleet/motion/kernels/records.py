@@ -1,0 +1,199 @@
+"""What the kernels work on: records in arrays, and the numbers that stand for kinds.
+
+Units are SI throughout. All records are aligned; the arrays belong to the Python side and are
+changed in place.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+NOBODY = -1  # no robot, no disc, the end of a list
+
+TURN, LINE, ARC = 0, 1, 2
+"""Kinds of pieces that a path is made of: on the spot, straight, along a circle."""
+
+WAITING, DRIVING, ARRIVED, EMPTY, LOST, TOUCHED = 0, 1, 2, 3, 4, 5
+"""Phases of a trip. From ARRIVED on the kernels leave it alone until Python has seen to it:
+EMPTY: the battery is; LOST: it got stuck or left its path; TOUCHED: it left its reservation."""
+
+DISC = np.dtype(
+    [
+        ("x", "f8"),  # centre [m]; NaN: not there
+        ("y", "f8"),
+        ("core", "f8"),  # radius of what stands there [m]: a robot's, or 0 of a corner
+        ("after", "i8"),  # the next disc of the same cell
+    ],
+    align=True,
+)
+"""A round obstacle: first the n places where robots rest or will rest, then the n bodies that
+stand in the way without resting, then the corners of the polygons."""
+
+EDGE = np.dtype(
+    [
+        ("ax", "f8"),  # from here [m]
+        ("ay", "f8"),
+        ("bx", "f8"),  # to here [m]
+        ("by", "f8"),
+        ("core", "f8"),  # 0 [m], less while a robot starts closer than it would pass
+        ("a", "i8"),  # the discs of its two corners
+        ("b", "i8"),
+    ],
+    align=True,
+)
+"""A side of a polygon."""
+
+GRID = np.dtype(
+    [
+        ("width", "f8"),  # of the arena [m]
+        ("height", "f8"),
+        ("radius", "f8"),  # of a robot [m]
+        ("cell", "f8"),  # side of a cell [m]
+        ("columns", "i8"),
+        ("rows", "i8"),
+    ],
+    align=True,
+)
+
+PIECE = np.dtype(
+    [
+        ("kind", "i8"),
+        ("x", "f8"),  # where it starts; of an arc, the centre [m]
+        ("y", "f8"),
+        ("radius", "f8"),  # of an arc [m]
+        ("angle", "f8"),  # heading of a line, or at the start of a turn; of an arc,
+        #                   from its centre to its start [rad]
+        ("sense", "f8"),  # of a turn or an arc: +1 counter-clockwise, -1 clockwise
+        ("cos", "f8"),  # of the heading of a line
+        ("sin", "f8"),
+        ("length", "f8"),  # [m], of a turn [rad]
+        ("limit", "f8"),  # top speed [m/s], of a turn [rad/s]
+        ("exit", "f8"),  # the most it may do at its end
+        ("rate", "f8"),  # of change of speed [m/s²], of a turn [rad/s²]
+        ("quadratic", "f8"),  # power at speed v: quadratic·v² + linear·v + constant [W]
+        ("linear", "f8"),
+        ("constant", "f8"),
+        ("inertia", "f8"),  # kinetic energy that is paid: inertia·v²/2 [J]
+    ],
+    align=True,
+)
+"""A piece of a path. What the drive has to know of the robot's build is written here, so that
+turning and driving, wheels and bodies are all the same to it."""
+
+MOVER = np.dtype(
+    [
+        # what every step needs
+        ("robot", "i8"),
+        ("slot", "i8"),  # its row in the arrays of the traffic
+        ("phase", "i8"),
+        ("start", "i8"),  # the step before which it sets off
+        ("awake", "i8"),  # 0: its body is parked; 2: it has just set off
+        ("adrift", "i8"),  # 1: pushed off its path; 2: and turning towards it
+        ("touching", "i8"),  # the engine did not let it have the commanded velocity
+        ("count", "i8"),  # pieces of its path
+        ("piece", "i8"),  # the one it is on
+        ("along", "f8"),  # how far on that piece [m or rad]
+        ("speed", "f8"),  # [m/s or rad/s]
+        ("x", "f8"),  # [m]
+        ("y", "f8"),
+        ("heading", "f8"),  # [rad], not wrapped
+        ("astern", "f8"),  # π if it drives backwards, otherwise 0 [rad]
+        ("vx", "f8"),  # commanded for this step [m/s]
+        ("vy", "f8"),
+        ("spin", "f8"),  # [rad/s]
+        ("ux", "f8"),  # velocity that it was left with after the step [m/s]
+        ("uy", "f8"),
+        ("charge", "f8"),  # of the battery [J]
+        ("spent", "f8"),  # [J]
+        ("path", "f8"),  # driven [m]
+        ("steps", "i8"),  # driven
+        # the rest of the account
+        ("departed", "i8"),  # the step before which it was sent
+        ("waited", "i8"),  # steps
+        ("contacts", "i8"),
+        ("jostled", "f8"),  # the part of its path that was driven adrift [m]
+        ("spent_turning", "f8"),  # the parts of what was spent [J]
+        ("spent_waiting", "f8"),
+        ("spent_adrift", "f8"),
+        ("best", "f8"),  # adrift: the least that was left to go [m]
+        ("since", "i8"),  # steps since that shrank
+        # its track
+        ("first", "i8"),  # tick of its first knot
+        ("knots", "i8"),
+        ("x0", "f8"),  # bounding box [m]
+        ("y0", "f8"),
+        ("x1", "f8"),
+        ("y1", "f8"),
+    ],
+    align=True,
+)
+"""A robot under way."""
+
+LAW = np.dtype(
+    [
+        ("dt", "f8"),  # of a step [s]
+        ("radius", "f8"),  # of a robot [m]
+        ("cruise", "f8"),  # [m/s]
+        ("acceleration", "f8"),  # [m/s²]
+        ("turn_rate", "f8"),  # [rad/s]
+        ("turn_acceleration", "f8"),  # [rad/s²]
+        ("mass", "f8"),  # [kg]
+        ("half_track", "f8"),  # from the middle to a wheel [m]
+        ("quadratic", "f8"),  # of P(v)
+        ("linear", "f8"),
+        ("constant", "f8"),
+        ("idle", "f8"),  # [W]
+        ("kinetic", "i8"),  # whether kinetic energy is paid and lost
+        ("per_wheel", "i8"),  # whether each wheel pays at its own speed
+        ("holonomic", "i8"),
+        ("reverse", "i8"),  # whether it may drive backwards
+        ("reserved", "i8"),  # whether trips are reserved in space and time
+        ("stride", "i8"),  # steps from knot to knot of a track
+        ("gap", "f8"),  # nearer than this, centres of movers are in conflict [m]
+        ("sample", "i8"),  # steps from sample to sample; 0: none
+    ],
+    align=True,
+)
+"""How robots drive: one for all."""
+
+GRIP = 0.95  # share of the turn rate that arcs may take; the rest is for finding back
+
+CIRCLE = np.dtype([("x", "f8"), ("y", "f8"), ("radius", "f8")], align=True)
+"""What the path may wind around; start and goal have radius 0."""
+
+
+class Floor(NamedTuple):
+    """What the planner sees."""
+
+    grid: NDArray[np.void]  # (1,) GRID
+    discs: NDArray[np.void]  # (2n + corners,) DISC
+    heads: NDArray[np.int64]  # (cells,) first disc of each cell
+    edges: NDArray[np.void]  # (m,) EDGE
+    bins: NDArray[np.int64]  # (cells + 1,) where each cell's edges begin in binned
+    binned: NDArray[np.int64]  # edges by cell
+    near: NDArray[np.int64]  # (discs + edges,) work space
+    marks: NDArray[np.bool_]  # (discs + edges,) work space, all false
+
+
+class Traffic(NamedTuple):
+    """Everybody under way, by slot."""
+
+    law: NDArray[np.void]  # (1,) LAW
+    movers: NDArray[np.void]  # (slots,) MOVER
+    pieces: NDArray[np.void]  # (slots, room) PIECE; the first is the turn on the spot
+    tracks: NDArray[np.float64]  # (slots, knots, 2) [m]
+    ghost: NDArray[np.void]  # (1,) MOVER, work space
+    poses: NDArray[np.float64]  # (slots, 4) x, y, heading, charge [m, m, rad, J]
+    over: NDArray[np.int64]  # (slots,) places in the order of departure
+
+
+class Wires(NamedTuple):
+    """What the kernels need to call the engine: see :mod:`fleet.motion.chipmunk`."""
+
+    calls: NDArray[np.int64]  # (7,) addresses of functions and buffers; 0: there is no engine
+    bodies: NDArray[np.int64]  # (n,) addresses by robot
+    numbers: NDArray[np.float64]  # what is read from a body, or written to it
+    counts: NDArray[np.int32]  # (1,) how many of them are in use

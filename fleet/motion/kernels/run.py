@@ -1,0 +1,197 @@
+"""Everybody's drive: setting off, and the loop over the steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fleet.motion.chipmunk import read_body, step_space, wake_body, write_body
+from fleet.motion.kernels.adrift import recover
+from fleet.motion.kernels.drive import coast, drive, position_at, wait
+from fleet.motion.kernels.geometry import wrapped
+from fleet.motion.kernels.grid import put
+from fleet.motion.kernels.profile import set_off
+from fleet.motion.kernels.records import ARRIVED, DRIVING, MOVER, TOUCHED, WAITING
+from fleet.motion.kernels.tracks import foresee, reserve
+from protocols.compiled import kernel
+
+STILL = 1e-9  # [m/s] a smaller difference to the command is no contact
+
+
+@kernel
+def launch(floor, traffic, active, slot, path, step):
+    """Send the mover in ``slot`` along ``path``, (k,) PIECE, at ``step`` or as soon as its way is
+    free, and reserve the place where it will rest.
+
+    Returns how many knots its track has; if that is more than there is room for, it must be
+    launched again with more.
+    """
+    movers, pieces, tracks, law = traffic.movers, traffic.pieces, traffic.tracks, traffic.law[0]
+    mover, end = movers[slot], len(path) + 1
+    for k in range(1, end):
+        pieces[slot, k] = path[k - 1]
+    set_off(mover, pieces, end, law)
+    mover.phase, mover.start, mover.knots = WAITING, step, 0
+    if end == 1:
+        mover.phase = ARRIVED
+        return 0
+    if mover.ux != 0.0 or mover.uy != 0.0:
+        mover.adrift = 1
+    x, y = position_at(pieces[slot, end - 1], pieces[slot, end - 1].length)
+    if law.reserved:
+        traffic.ghost[0] = mover
+        ghost = traffic.ghost[0]
+        foresee(mover, ghost, pieces, tracks, law, step)
+        if mover.knots > tracks.shape[1]:
+            return mover.knots
+        mover.start += law.stride * reserve(mover, movers, tracks, active, law)
+        x, y = ghost.x, ghost.y
+    put(floor, mover.robot, x, y)
+    return mover.knots
+
+
+@kernel
+def embark(floor, traffic, active, slot, robot, x, y, heading, charge, path, step):
+    """Give ``robot`` the mover in ``slot`` and send it along ``path``; see launch."""
+    traffic.movers[slot] = np.zeros(1, MOVER)[0]
+    mover = traffic.movers[slot]
+    mover.robot, mover.slot, mover.departed = robot, slot, step
+    mover.x, mover.y, mover.heading, mover.charge = x, y, heading, charge
+    return launch(floor, traffic, active, slot, path, step)
+
+
+@kernel
+def _decide(mover, pieces, law, step):
+    """Command what a mover does in ``step``; returns whether it is on the move."""
+    if mover.phase == WAITING:
+        if step < mover.start:
+            wait(mover, law)
+            return False
+        mover.phase = DRIVING
+        if not mover.awake:
+            mover.awake = 2
+    mover.steps += 1
+    if mover.adrift:
+        recover(mover, pieces, law)
+    else:
+        drive(mover, pieces, law, law.dt)
+    return True
+
+
+@kernel
+def _see(mover, law):
+    """See what became of the command; returns whether the trip needs looking after."""
+    if mover.awake:
+        mover.awake = 1
+        dx, dy = mover.ux - mover.vx, mover.uy - mover.vy
+        touching = dx * dx + dy * dy > STILL * STILL
+        if touching and not mover.touching:
+            mover.contacts += 1
+        mover.touching = 1 if touching else 0
+        if touching and mover.phase == DRIVING and not mover.adrift:
+            mover.adrift = 1
+            if law.reserved:
+                mover.phase = TOUCHED
+    return mover.phase >= ARRIVED
+
+
+@kernel
+def command(movers, pieces, law, active, step):
+    """Decide what everybody does in ``step``; returns how many are on the move."""
+    driving = 0
+    for k in range(len(active)):
+        if _decide(movers[active[k]], pieces, law, step):
+            driving += 1
+    return driving
+
+
+@kernel
+def settle(movers, law, active):
+    """See what became of the commands; returns how many trips need looking after."""
+    over = 0
+    for k in range(len(active)):
+        if _see(movers[active[k]], law):
+            over += 1
+    return over
+
+
+@kernel
+def _tell(mover, calls, bodies, numbers, counts):
+    """Give a mover's command to its body."""
+    body = bodies[mover.robot]
+    if mover.awake == 2:
+        wake_body(calls, body)
+    write_body(calls, body, numbers, counts, mover.vx, mover.vy, mover.spin)
+
+
+@kernel
+def _hear(mover, calls, bodies, numbers, counts):
+    """Learn from a mover's body where it is now."""
+    read_body(calls, bodies[mover.robot], counts)
+    mover.x, mover.y, mover.heading = numbers[0], numbers[1], numbers[2]
+    mover.ux, mover.uy = numbers[3], numbers[4]
+
+
+@kernel
+def sample(movers, law, active, samples, count, step):
+    """Keep the poses at ``step`` of those whose turn it is; returns how many are kept now."""
+    for k in range(len(active)):
+        mover = movers[active[k]]
+        turn = mover.phase == DRIVING and (step - mover.departed) % law.sample == 0
+        if turn or mover.phase >= ARRIVED:
+            samples[count, 0], samples[count, 1] = mover.robot, step * law.dt
+            samples[count, 2], samples[count, 3] = mover.x, mover.y
+            samples[count, 4], samples[count, 5] = mover.heading, mover.charge
+            count += 1
+    return count
+
+
+@kernel
+def report(movers, active, poses, over):
+    """Write down how everybody is now, and who needs looking after, in the order of ``active``."""
+    count = 0
+    for k in range(len(active)):
+        mover = movers[active[k]]
+        poses[k, 0], poses[k, 1] = mover.x, mover.y
+        poses[k, 2], poses[k, 3] = wrapped(mover.heading), mover.charge
+        if mover.phase >= ARRIVED:
+            over[count] = k
+            count += 1
+    return count
+
+
+@kernel
+def run(traffic, wires, active, step, steps, samples):
+    """Drive on from ``step`` until trips need looking after, ``steps`` at most.
+
+    ``wires``: the engine; with none, all that drive coast. Returns (steps made, samples kept,
+    trips that need looking after); it stops early if ``samples`` gets full.
+    """
+    movers, pieces, law = traffic.movers, traffic.pieces, traffic.law[0]
+    calls, bodies, numbers, counts = wires.calls, wires.bodies, wires.numbers, wires.counts
+    engine = calls[0] != 0
+    made, kept, over = 0, 0, 0
+    while made < steps and over == 0:
+        if law.sample > 0 and kept + len(active) > len(samples):
+            break
+        driving = 0
+        for k in range(len(active)):
+            mover = movers[active[k]]
+            if _decide(mover, pieces, law, step + made):
+                driving += 1
+                if engine:
+                    _tell(mover, calls, bodies, numbers, counts)
+                else:
+                    coast(mover, law.dt)
+        if engine and driving > 0:
+            step_space(calls, law.dt)
+        for k in range(len(active)):
+            mover = movers[active[k]]
+            if engine and mover.awake:
+                _hear(mover, calls, bodies, numbers, counts)
+            if _see(mover, law):
+                over += 1
+        made += 1
+        if law.sample > 0:
+            kept = sample(movers, law, active, samples, kept, step + made)
+    report(movers, active, traffic.poses, traffic.over)
+    return made, kept, over

@@ -1,0 +1,56 @@
+"""What the kernels have to know of the robot's build and of the options."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion.kernels.records import GRIP, LAW
+from fleet.motion.options import DriveOptions
+from fleet.robot import RobotSpec
+
+TICK = 1.0 / 15.0  # [s] from knot to knot of a track, about
+
+
+def law_of(
+    spec: RobotSpec, options: DriveOptions, sample_interval: float | None
+) -> NDArray[np.void]:
+    """The record (1,) LAW that all kernels share."""
+    stride = max(1, round(TICK / options.dt))
+    law = np.zeros(1, LAW)
+    law[0] = (
+        options.dt,
+        spec.radius,
+        spec.cruise,
+        spec.acceleration,
+        spec.turn_rate,
+        spec.turn_acceleration,
+        spec.mass,
+        0.5 * spec.wheel_track,
+        spec.power.quadratic,
+        spec.power.linear,
+        spec.power.constant,
+        spec.extra.idle,
+        spec.extra.kinetic,
+        spec.extra.per_wheel,
+        spec.drive == "holonomic",
+        spec.reverse,
+        options.traffic == "reserved",
+        stride,
+        2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt),
+        0 if sample_interval is None else max(1, round(sample_interval / options.dt)),
+    )
+    return law
+
+
+def _strays(spec: RobotSpec, tick: float) -> float:
+    """How far a robot may be from where even motion between two knots has it [m].
+
+    At most an eighth of its acceleration times the time squared, along or across its path; and
+    at most a quarter of what it drives at cruise speed, however sharply it speeds up.
+    """
+    across = inf if spec.drive == "holonomic" else GRIP * spec.turn_rate * spec.cruise
+    acceleration = max(spec.acceleration, across)
+    return min(acceleration * tick * tick / 8.0, spec.cruise * tick / 4.0)

@@ -1,0 +1,188 @@
+"""Everybody under way: the arrays that the kernels work on, and the calls that keep them.
+
+Importing this module loads numba.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion import SAMPLE_FIELDS
+from fleet.motion.chipmunk import disconnected
+from fleet.motion.engine import Engine
+from fleet.motion.kernels.records import ARRIVED, MOVER, PIECE, Floor, Traffic
+from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
+from fleet.motion.kernels.stopping import blocked, stand, stop_short
+from protocols.messages import Point, RobotId
+
+Path = NDArray[Any]  # (k,) PIECE
+
+
+class Movers:
+    """Robots under way, each in a slot, which is used again; in order of departure."""
+
+    def __init__(self, law: NDArray[Any], floor: Floor, engine: Engine | None) -> None:
+        self.traffic = Traffic(
+            law,
+            np.zeros(0, MOVER),
+            np.zeros((0, 16), PIECE),
+            np.zeros((0, 64, 2)),
+            np.zeros(1, MOVER),
+            np.zeros((0, 4)),
+            np.zeros(0, np.int64),
+        )
+        self._floor = floor
+        self._engine = engine
+        self._wires = disconnected() if engine is None else engine.wires
+        self._free: list[int] = []
+        self._slots = np.zeros(0, np.int64)  # in order of departure
+        self._count = 0  # of them in use
+        self._found = np.zeros(0, np.int64)
+        self._samples = np.zeros((1024 if law[0]["sample"] else 0, len(SAMPLE_FIELDS)))
+        self._kept: list[NDArray[np.float64]] = []
+        self._more_slots()
+
+    def depart(
+        self, robot: RobotId, position: Point, heading: float, charge: float, path: Path, step: int
+    ) -> int:
+        """Send ``robot`` along ``path``; returns its slot."""
+        if not self._free:
+            self._more_slots()
+        slot = self._free.pop()
+        self._slots[self._count] = slot
+        self._count += 1
+        self._more_pieces(len(path) + 1)
+        needed = embark(
+            self._floor, self.traffic, self._active, slot, robot, *position, heading, charge,
+            path, step,
+        )  # fmt: skip
+        if needed > self.traffic.tracks.shape[1]:
+            self._more_knots(needed)
+            self.resume(slot, path, step)
+        return slot
+
+    def resume(self, slot: int, path: Path, step: int) -> None:
+        """Send a robot that is under way along another ``path``."""
+        self._more_pieces(len(path) + 1)
+        while True:
+            needed = launch(self._floor, self.traffic, self._active, slot, path, step)
+            if needed <= self.traffic.tracks.shape[1]:
+                return
+            self._more_knots(needed)
+
+    def leave(self, places: list[int]) -> None:
+        """The trips at these places in the order are over: their slots are free again."""
+        active = self._active
+        self._free.extend(active[places].tolist())
+        left = np.delete(active, places)
+        self._count = len(left)
+        self._slots[: len(left)] = left
+
+    def advance(self, step: int, steps: int) -> tuple[int, list[int]]:
+        """Drive on from ``step`` by ``steps`` at most.
+
+        Returns the steps made, and who needs looking after: places in the order of departure.
+        """
+        if len(self._samples) and self._count > len(self._samples):
+            self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
+        drive = self._run_openly if self._wires is None else self._run
+        made, kept, over = drive(step, steps)
+        if kept:
+            self._kept.append(self._samples[:kept].copy())
+        places: list[int] = self.traffic.over[:over].tolist()
+        return made, places
+
+    def poses(self) -> NDArray[np.float64]:
+        """x, y, heading, charge (k, 4) [m, m, rad, J], in order of departure."""
+        return self.traffic.poses[: self._count]
+
+    def phase(self, slot: int) -> int:
+        """Which phase of :mod:`fleet.motion.kernels.records` the trip is in."""
+        return int(self.traffic.movers[slot]["phase"])
+
+    def state(self, slot: int) -> dict[str, Any]:
+        """Everything about one mover, by the names of :data:`kernels.records.MOVER`."""
+        return dict(zip(MOVER.names or (), self.traffic.movers[slot].tolist(), strict=True))
+
+    def samples(self) -> NDArray[np.float64]:
+        """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`."""
+        rows = np.vstack(self._kept) if self._kept else np.empty((0, len(SAMPLE_FIELDS)))
+        self._kept.clear()
+        return rows
+
+    def stand(self, slot: int, step: int) -> None:
+        """The robot stands where it is from ``step`` on."""
+        stand(self._floor, self.traffic, slot, step)
+
+    def stop_short(self, slot: int, step: int) -> None:
+        """The robot brakes from ``step`` on."""
+        stop_short(self._floor, self.traffic, slot, step)
+
+    def blocked_by(self, slot: int, step: int) -> list[int]:
+        """The slots of those who will come too near to a robot that stands or stops."""
+        count = blocked(self.traffic, self._active, slot, step, self._found)
+        found: list[int] = self._found[:count].tolist()
+        return found
+
+    def _run(self, step: int, steps: int) -> tuple[int, int, int]:
+        found: tuple[int, int, int] = run(
+            self.traffic, self._wires, self._active, step, steps, self._samples
+        )
+        return found
+
+    def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
+        """The same as the compiled loop, with the engine stepped over its public interface."""
+        assert self._engine is not None
+        movers, pieces, law = self.traffic.movers, self.traffic.pieces, self.traffic.law[0]
+        kept = over = made = 0
+        while made < steps and over == 0:
+            if len(self._samples) and kept + self._count > len(self._samples):
+                break
+            if command(movers, pieces, law, self._active, step + made) > 0:
+                self._engine.step(movers, self._active, float(law["dt"]))
+            over = settle(movers, law, self._active)
+            made += 1
+            if law["sample"]:
+                kept = sample(movers, law, self._active, self._samples, kept, step + made)
+        report(movers, self._active, self.traffic.poses, self.traffic.over)
+        return made, kept, over
+
+    @property
+    def _active(self) -> NDArray[np.int64]:
+        """The slots in use, in order of departure."""
+        return self._slots[: self._count]
+
+    def _more_slots(self) -> None:
+        have = len(self.traffic.movers)
+        more = max(4, have)
+        self.traffic = self.traffic._replace(
+            movers=_longer(self.traffic.movers, have + more),
+            pieces=_longer(self.traffic.pieces, have + more),
+            tracks=_longer(self.traffic.tracks, have + more),
+            poses=_longer(self.traffic.poses, have + more),
+            over=_longer(self.traffic.over, have + more),
+        )
+        self._slots = _longer(self._slots, have + more)
+        self._found = np.zeros(have + more, np.int64)
+        self._free.extend(range(have + more - 1, have - 1, -1))
+
+    def _more_pieces(self, needed: int) -> None:
+        if needed > self.traffic.pieces.shape[1]:
+            self.traffic = self.traffic._replace(
+                pieces=_longer(self.traffic.pieces.swapaxes(0, 1), 2 * needed).swapaxes(0, 1).copy()
+            )
+
+    def _more_knots(self, needed: int) -> None:
+        self.traffic = self.traffic._replace(
+            tracks=_longer(self.traffic.tracks.swapaxes(0, 1), 2 * needed).swapaxes(0, 1).copy()
+        )
+
+
+def _longer(array: NDArray[Any], length: int) -> NDArray[Any]:
+    """The same with zeros after it."""
+    longer = np.zeros((length, *array.shape[1:]), array.dtype)
+    longer[: len(array)] = array
+    return longer

@@ -1,0 +1,75 @@
+"""Where everybody rests, and the paths among them.
+
+Importing this module loads numba.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion.floor import lay_out
+from fleet.motion.kernels.grid import put
+from fleet.motion.kernels.plan import NO_PATH, move_in, plan
+from fleet.motion.kernels.records import NOBODY, PIECE
+from protocols.messages import Point, RobotId
+from worlds.arena import Arena
+
+
+class Plan(NamedTuple):
+    """A way to a site, or that there is none."""
+
+    pieces: NDArray[Any] | None  # (k,) PIECE; None: no path
+    length: float  # [m]
+    goal: Point  # where it ends: the site, or as near as there is room [m]
+
+
+class Planner:
+    """Plans, and remembers plans for as long as nobody has moved.
+
+    Raises:
+        ValueError: robots overlap one another, an obstacle or a wall.
+    """
+
+    def __init__(
+        self, arena: Arena, radius: float, points: Sequence[Point], clearances: Sequence[float]
+    ) -> None:
+        self.floor = lay_out(arena, radius, len(points))
+        self._clearances = np.array(clearances)
+        self._pieces = np.zeros(32, PIECE)
+        self._known: dict[tuple[RobotId, Point], Plan] = {}
+        which, other = move_in(self.floor, np.array(points, float).reshape(-1, 2))
+        if which != NOBODY:
+            whom = f"robot {other}" if other != NOBODY else "a wall or an obstacle"
+            raise ValueError(
+                f"robot {which} of radius {radius} m at {points[which]} overlaps {whom};"
+                f" expected bodies apart"
+            )
+
+    def plan(self, robot: RobotId, position: Point, site: Point) -> Plan:
+        """The shortest way of ``robot`` from ``position`` to ``site`` [m]."""
+        known = self._known.get((robot, site))
+        if known is not None:
+            return known
+        while True:
+            end, x, y, length = plan(
+                self.floor, robot, *position, *site, self._clearances, self._pieces
+            )
+            if end <= len(self._pieces):
+                break
+            self._pieces = np.zeros(2 * end, PIECE)
+        found = Plan(None if end == NO_PATH else self._pieces[1:end].copy(), length, (x, y))
+        self._known[robot, site] = found
+        return found
+
+    def rest(self, robot: RobotId, position: Point) -> None:
+        """The robot rests at ``position`` [m], or will."""
+        put(self.floor, robot, *position)
+        self._known.clear()
+
+    def changed(self) -> None:
+        """Somebody's place has been changed by a kernel: forget the plans."""
+        self._known.clear()
