@@ -3,27 +3,41 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from math import pi
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
+from math import inf, pi
 
 import numpy as np
 
 from fleet.energy import Battery
+from fleet.handler import Handler
 from fleet.motion.catalogue import MOTIONS
 from fleet.observer import Observer
-from fleet.radio import IdealRadio
+from fleet.radio import Radio
+from fleet.radio.ideal import IdealRadio
+from fleet.radio.lossy import LossyRadio, RadioSpec
 from fleet.results import Summary
 from fleet.robot import Robot
-from fleet.scenario.choices import bind_protocol, make_motion, make_world
+from fleet.scenario.choices import (
+    bind_events,
+    bind_protocol,
+    make_motion,
+    make_timing,
+    make_world,
+    radio_spec,
+)
+from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
-from fleet.simulation import Fleet, Labels, Simulation
+from fleet.simulation import Course, Fleet, Labels, Simulation
+from fleet.timing import Stream
 from protocols.links import connected, unit_disc
 from protocols.messages import Point
 from protocols.topology import Topology
 from worlds.arena import FloatArray, ImpossibleWorld
 from worlds.catalogue import World
+from worlds.sensors import deploy
 
-STREAMS = ("placement", "sites", "collector", "heading")
+STREAMS = ("placement", "sites", "collector", "heading", "times", "radio", "faults", "sensors")
 """Independent random streams of a run. Append only: the order decides every run."""
 
 ATTEMPTS = 2000  # placements drawn in search of a connected network
@@ -56,41 +70,86 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     motion = make_motion(scenario.motion, scenario.robot, world.arena, interval)
     solid = MOTIONS[scenario.motion.name].solid
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
+    radio_choice = radio_spec(scenario.radio)
     topology = Topology(
         points,
         scenario.range,
         scenario.graph,
-        compiled=solid or len(points) > COMPILE_ABOVE or "numba" in sys.modules,
+        compiled=solid
+        or radio_choice is not None
+        or len(points) > COMPILE_ABOVE
+        or "numba" in sys.modules,
     )
-    radio = IdealRadio(topology)
+    radio: Radio = IdealRadio(topology)
+    if radio_choice is not None:
+        radio = lossy_radio(points, scenario, radio_choice, random["radio"])
     headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
     robots = [
         Robot(
-            id,
-            point,
-            heading,
-            Battery(scenario.robot.capacity),
-            scenario.range,
-            radio.tables,
-            motion,
+            id, point, heading, Battery(scenario.robot.capacity), scenario.range,
+            radio.tables, motion,
         )
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
-    ]
+    ]  # fmt: skip
     motion.place(robots)
     labels = Labels(
         scenario.protocol.name, scenario.motion.name, scenario.world.name,
         scenario.seed, scenario.search_radius,
     )  # fmt: skip
+    fleet = Fleet(labels, world.arena, scenario.robot, robots, topology)
     return Simulation(
-        Fleet(labels, world.arena, scenario.robot, robots, topology),
+        fleet,
         protocol,
         radio,
         motion,
-        world.sites(world.arena, random["sites"]),
-        uniform_shares(random["collector"]),
-        rounds=scenario.rounds,
-        observers=observers,
+        make_handler(scenario, world, random),
+        make_course(scenario, world, len(robots), random),
+        observers,
     )
+
+
+def make_course(
+    scenario: Scenario, world: World, robots: int, random: Mapping[str, np.random.Generator]
+) -> Course:
+    """What will befall the fleet."""
+    timing = make_timing(scenario.time)
+    rate = timing.rate if isinstance(timing, Stream) else inf
+    try:
+        occurrences = bind_events(scenario.events)(
+            world.arena, rate, random["sites"], random["times"]
+        )
+        first = next(occurrences, None)  # what an event process refuses, it refuses here
+    except ValueError as error:
+        raise bad("events", str(error)) from error
+    return Course(
+        timing,
+        iter(()) if first is None else chain([first], occurrences),
+        tuple(scenario.faults.breakdowns(robots, random["faults"])),
+        scenario.faults.blackouts,
+        scenario.rounds,
+    )
+
+
+def make_handler(
+    scenario: Scenario, world: World, random: Mapping[str, np.random.Generator]
+) -> Handler:
+    """Who is told of events, and by whom."""
+    field = None
+    if scenario.sensors is not None:
+        field = deploy(world.arena, scenario.sensors, random["sensors"])
+    shares = uniform_shares(random["collector"])
+    return Handler(shares, scenario.handler, field, random["sensors"])
+
+
+def lossy_radio(
+    points: Sequence[Point], scenario: Scenario, spec: RadioSpec, rng: np.random.Generator
+) -> LossyRadio:
+    """The radio of that kind among robots at ``points`` [m]."""
+    seed = int(rng.integers(2**62))
+    try:
+        return LossyRadio(points, scenario.range, scenario.graph, spec, seed)
+    except ValueError as error:
+        raise bad("graph", str(error)) from error
 
 
 def streams(seed: int) -> dict[str, np.random.Generator]:

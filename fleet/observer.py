@@ -23,6 +23,7 @@ class Sent(NamedTuple):
     event: int  # the id of the event it was about
     transmission: Transmission
     heard: Heard
+    attempts: int = 1  # frames it took
 
 
 class Observer:

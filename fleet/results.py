@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from math import fsum, sqrt
+from typing import TYPE_CHECKING, Any
+
+from fleet.stream import StreamFigures
+from protocols.messages import KINDS
+
+if TYPE_CHECKING:
+    from fleet.simulation import Fleet
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +28,7 @@ class Summary:
     robots: int
     radio_range: float  # r [m]
     search_radius: float  # SR [m]
-    lifetime: int  # rounds served before the first event that nobody took
+    lifetime: int  # events served before the first that never was
     events: int  # events that happened
     served: int  # events that a robot reached
     failed: int  # trips that ended short of their event
@@ -43,21 +50,81 @@ class Summary:
     simulated_time: float
     wall_time: float
 
+    stream: StreamFigures | None = None  # of a stream; there are none in rounds
+
     def as_dict(self) -> dict[str, Any]:
-        """The record as plain Python values, keys in the order above."""
-        return asdict(self)
+        """The record as plain Python values, keys in the order above; ``stream`` if there is."""
+        described = asdict(self)
+        if self.stream is None:
+            del described["stream"]
+        return described
 
 
 @dataclass(slots=True)
 class Tally:
     """What is counted as a run goes on."""
 
-    events: int = 0
     served: int = 0
-    failed: int = 0
+    failed: int = 0  # trips
     conversations: int = 0
-    closest: int = 0
+    closest: int = 0  # conversations that found the nearest robot
     predicted: float = 0.0  # [J]
     distance: float = 0.0  # [m]
     path: float = 0.0  # [m]
+    engaged: float = 0.0  # time that robots were promised, under way or at work, summed [s]
+    repeated: int = 0  # frames sent again because nobody acknowledged them
+    unheard: int = 0  # transmissions that nobody heard
+    restarts: int = 0  # searches begun anew because the packet went round in circles
+    broken: int = 0  # conversations that came to no end
+    conflicts: int = 0  # auctions won by a robot that another had taken meanwhile
+    breakdowns: int = 0
     kinds: Counter[str] = field(default_factory=Counter)  # transmissions
+
+
+def summarise(
+    fleet: Fleet,
+    tally: Tally,
+    events: int,
+    simulated_time: float,
+    wall_time: float,
+    figures: StreamFigures | None,
+) -> Summary:
+    """The record of a run that is over."""
+    labels = fleet.labels
+    n = len(fleet.robots)
+    left = [robot.battery.charge for robot in fleet.robots]
+    initial = fsum(robot.battery.capacity for robot in fleet.robots)
+    mean = fsum(left) / n
+    by_kind: dict[str, int] = {kind: tally.kinds[kind] for kind in KINDS}
+    messages = sum(by_kind.values())
+    return Summary(
+        protocol=labels.protocol,
+        motion=labels.motion,
+        world=labels.world,
+        seed=labels.seed,
+        robots=n,
+        radio_range=fleet.topology.radio_range,
+        search_radius=labels.search_radius,
+        lifetime=tally.served if figures is None else figures.served_before_first_loss,
+        events=events,
+        served=tally.served,
+        failed=tally.failed,
+        messages=messages,
+        messages_per_robot=messages / n,
+        messages_by_kind=by_kind,
+        hops_greedy=by_kind["route-greedy"],
+        hops_face=by_kind["route-face"],
+        energy_initial=initial,
+        energy_predicted=tally.predicted,
+        energy_drained=initial - fsum(left),
+        energy_left_mean=mean,
+        energy_left_min=min(left),
+        energy_left_sd=sqrt(fsum((charge - mean) ** 2 for charge in left) / n),
+        reactions_per_robot=tally.served / n,
+        distance_per_robot=tally.distance / n,
+        path_per_robot=tally.path / n,
+        closest_found=tally.closest / max(tally.conversations, 1),
+        simulated_time=simulated_time,
+        wall_time=wall_time,
+        stream=figures,
+    )

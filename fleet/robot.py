@@ -89,8 +89,8 @@ class Robot:
     """
 
     __slots__ = (
-        "_motion", "_tables", "alive", "battery", "failed_sites", "heading", "id", "position",
-        "radio_range",
+        "_motion", "_tables", "able", "alive", "battery", "engaged", "failed_sites", "heading",
+        "id", "position", "radio_range", "silenced",
     )  # fmt: skip
 
     def __init__(
@@ -108,10 +108,18 @@ class Robot:
         self.heading = heading  # [rad]
         self.battery = battery
         self.radio_range = radio_range  # r [m]
-        self.alive = True
+        self.alive = True  # False: its battery is empty, or it broke down altogether
+        self.able = True  # False: its motor broke down; it stays, and still relays
+        self.silenced = False  # it stands where no radio works for a while
+        self.engaged = False  # it is promised to an event, on its way, or at work
         self.failed_sites: set[Point] = set()  # it was sent there and did not get there
         self._tables = tables
         self._motion = motion
+
+    @property
+    def on_air(self) -> bool:
+        """Whether it can be talked to."""
+        return self.alive and not self.silenced
 
     @property
     def energy(self) -> float:
@@ -125,6 +133,6 @@ class Robot:
 
     def cost_to(self, site: Point) -> float:
         """The energy it believes that going to ``site`` takes [J]; inf if it cannot go."""
-        if site in self.failed_sites:
+        if self.engaged or not self.able or not self.alive or site in self.failed_sites:
             return inf
         return self._motion.cost(self, site)

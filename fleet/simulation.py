@@ -1,21 +1,31 @@
-"""The loop: events are told, talked over and driven to, one at a time, until nobody can."""
+"""The loop: events happen, are talked over and driven to, in rounds or as a stream."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import dist, fsum, inf, sqrt
+from functools import partial
+from math import dist, inf
 
+from fleet.agenda import Agenda
+from fleet.conversing import Conversations
+from fleet.crew import Crew
+from fleet.faults import Blackout, Breakdown
+from fleet.handler import Handler, Notice
 from fleet.motion import Motion, Trip
-from fleet.observer import Observer, Sent
-from fleet.radio import IdealRadio
-from fleet.results import Summary, Tally
+from fleet.observer import Observer
+from fleet.radio import Radio
+from fleet.results import Summary, Tally, summarise
 from fleet.robot import Robot, RobotSpec
+from fleet.stream import stream_figures
+from fleet.tasks import State, Task, TaskBook
+from fleet.timing import Rounds, Stream
 from protocols.geometry import squared_distance
-from protocols.messages import KINDS, Award, Event, Point, ProtocolFunction, RobotId
+from protocols.messages import Award, Event, ProtocolFunction
 from protocols.topology import Topology
 from worlds.arena import Arena
+from worlds.events import Occurrence
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,187 +47,308 @@ class Fleet:
     arena: Arena
     spec: RobotSpec
     robots: Sequence[Robot]
-    topology: Topology
+    topology: Topology  # the true one, whatever robots believe
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """What befalls a fleet: how time goes, what happens, what breaks, and when it is over."""
+
+    timing: Rounds | Stream
+    occurrences: Iterator[Occurrence]
+    breakdowns: Sequence[Breakdown] = ()
+    blackouts: Sequence[Blackout] = ()
+    rounds: int | None = None  # served in rounds, or raised in a stream; None: no limit
 
 
 class Simulation:
-    """One run of one scenario, in rounds: the next event comes when the robot has arrived.
-
-    ``sites`` yields where events happen, ``shares`` numbers in [0, 1) that pick the
-    collecting robot. ``rounds`` ends the run early; None: a whole network lifetime.
-    """
+    """One run of one scenario."""
 
     def __init__(
         self,
         fleet: Fleet,
         protocol: ProtocolFunction,
-        radio: IdealRadio,
+        radio: Radio,
         motion: Motion,
-        sites: Iterator[Point],
-        shares: Iterator[float],
-        *,
-        rounds: int | None = None,
+        handler: Handler,
+        course: Course,
         observers: Sequence[Observer] = (),
     ) -> None:
         self.fleet = fleet
         self.tally = Tally()
-        self._protocol = protocol
-        self._radio = radio
+        self.book = TaskBook()
+        self.now = 0.0  # [s]
+        self._course = course
+        self._handler = handler
         self._motion = motion
-        self._sites = sites
-        self._shares = shares
-        self._rounds = inf if rounds is None else rounds
         self._observers = tuple(observers)
-        self._on_air = list(range(len(fleet.robots)))
-        self._number = 0
-        self._link_interval = min((o.link_interval or inf for o in observers), default=inf)
+        self._agenda = Agenda()
+        self._crew = Crew(fleet, radio, motion, self._observers)
+        self._talks = Conversations(
+            protocol, fleet.robots, radio, self._agenda, self.tally, self._observers,
+            fleet.spec.extra.transmission, self._concluded, self._broken_off,
+        )  # fmt: skip
+        self._trips: dict[int, Task] = {}  # by robot: what it is under way to
+        self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
+        self._over = False
 
     def run(self) -> Summary:
-        """Play rounds until an event finds nobody, or the rounds are up."""
+        """Play to the end: of the network's life, of the rounds, or of the time."""
         started = time.perf_counter()
         try:
             self._tell(lambda o: o.run_started(self.fleet))
-            while self.tally.served < self._rounds and self._round():
-                pass
+            self._begin()
+            while not self._over:
+                self._go_on()
+            for robot in list(self._since):
+                self._release(self.fleet.robots[robot])
             summary = self._summary(time.perf_counter() - started)
             self._tell(lambda o: o.run_ended(summary))
             return summary
         finally:
             self._tell(lambda o: o.closed())
 
-    def _round(self) -> bool:
-        """One event, raised again while robots fail to reach it. False: nobody took it."""
-        event = Event(self.tally.events, next(self._sites))
-        self.tally.events += 1
-        while self._on_air:
-            source = self._on_air[int(next(self._shares) * len(self._on_air))]
-            winner = self._converse(event, source).winner
-            if winner is None:
-                return False
-            if self._drive(self.fleet.robots[winner], event).outcome == "arrived":
-                self.tally.served += 1
-                return True
-            self.tally.failed += 1
-        return False
+    def _begin(self) -> None:
+        """Put down what is known to come."""
+        course, agenda = self._course, self._agenda
+        self._handler.meet(self.fleet.robots)
+        for fault in course.breakdowns:
+            agenda.at(fault.time, partial(self._break_down, fault))
+        for blackout in course.blackouts:
+            agenda.at(blackout.start, partial(self._crew.black_out, blackout, blackout.start))
+            agenda.at(blackout.end, partial(self._crew.lift, blackout, blackout.end))
+        if isinstance(course.timing, Stream):
+            agenda.at(course.timing.duration, self._stop)
+        self._expect()
 
-    def _converse(self, event: Event, source: RobotId) -> Award:
-        """Let the protocol talk its way from the collecting robot to an award."""
-        now = self._motion.now
-        self._tell(lambda o: o.event_raised(event, source, now))
-        award = self._talk(event, source)
-        self.tally.conversations += 1
-        self.tally.closest += self._found_closest(event.position, award)
-        self._tell(lambda o: o.awarded(event, award, now))
-        return award
+    def _go_on(self) -> None:
+        """Drive up to what is due next, or to the next end of a trip, and see to it."""
+        due = self._agenda.next_time
+        if due <= self.now:
+            self._agenda.take()()
+            return
+        until = self._crew.slice_end(self.now, due)
+        if until == inf and not self._trips:
+            self._over = True  # nothing can happen any more
+            return
+        trips = self._motion.advance(until)
+        self.now = max(self.now, self._motion.now if trips else until)
+        if trips or until < due:
+            self._crew.follow(self.now, [trip.robot for trip in trips])
+            for trip in trips:
+                self._settle(self.fleet.robots[trip.robot], trip)
+        else:
+            self._agenda.take()()
 
-    def _talk(self, event: Event, source: RobotId) -> Award:
-        conversation = self._protocol(self.fleet.robots, event, source)
-        say, hear = conversation.send, self._radio.deliver
-        kinds, observers, number = self.tally.kinds, self._observers, self._number
-        heard = None
-        try:
-            while True:
-                transmission = say(heard)  # type: ignore[arg-type]  # None starts a generator
-                heard = hear(transmission)
-                kinds[transmission.kind] += 1
-                number += 1
-                for observer in observers:
-                    observer.sent(Sent(number, self._motion.now, event.id, transmission, heard))
-        except StopIteration as end:
-            award: Award = end.value
-            return award
-        finally:
-            self._number = number
+    def _stop(self) -> None:
+        self._over = True
 
-    def _found_closest(self, site: Point, award: Award) -> bool:
-        robots = self.fleet.robots
+    # What happens, and who is told
+
+    def _expect(self) -> None:
+        """Put the next occurrence down: in rounds now, in a stream by its time."""
+        limit = self._course.rounds
+        timing = self._course.timing
+        raised = len(self.book.tasks) if isinstance(timing, Stream) else self.tally.served
+        if limit is not None and raised >= limit:
+            self._over = self._over or isinstance(timing, Rounds)
+            return
+        occurrence = next(self._course.occurrences, None)
+        if occurrence is None:
+            self._over = self._over or isinstance(timing, Rounds)
+        elif isinstance(timing, Stream):
+            self._agenda.at(occurrence.time, partial(self._occur, occurrence))
+        else:
+            self._occur(occurrence)
+
+    def _occur(self, occurrence: Occurrence) -> None:
+        """Something happens; word of it comes to the handler, or does not."""
+        timing, site = self._course.timing, occurrence.position
+        service = timing.service if occurrence.service is None else occurrence.service
+        deadline = timing.deadline if isinstance(timing, Stream) else inf
+        if occurrence.deadline is not None:
+            deadline = occurrence.deadline
+        notices = self._handler.notices(site)
+        noticed = bool(notices)
+        for notice in notices or [Notice(0.0, site)]:
+            event = Event(len(self.book.tasks), notice.position)
+            task = Task(event, site, self.now, deadline, service)
+            self.book.open(task)
+            if not noticed:
+                self._close(task, State.LOST, "no sensor noticed it")
+            elif notice.delay:
+                self._agenda.at(self.now + notice.delay, partial(self._offer, task))
+            else:
+                self._offer(task)
+            if deadline < inf:
+                self._agenda.at(self.now + deadline, partial(self._expire, task))
+        if isinstance(timing, Stream):
+            self._expect()
+
+    def _close(self, task: Task, state: State, reason: str = "") -> None:
+        """A task has come to its end; in rounds the next event may happen."""
+        self.book.close(task, state, self.now, reason)
+        if isinstance(self._course.timing, Rounds) and not self.book.open_tasks:
+            self._agenda.at(self.now, self._expect)
+
+    def _offer(self, task: Task) -> None:
+        """Tell a robot on the air of the task, and let the protocol talk."""
+        if task.state not in (State.REPORTED, State.WAITING):
+            return
+        task.state = State.REPORTED
+        self._crew.freshen(self.now)
+        on_air = self._crew.on_air
+        if not on_air:
+            self._put_off(task, "nobody is on the air")
+            return
+        source = self._handler.collector(task.event.position, on_air)
+        self._tell(lambda o: o.event_raised(task.event, source, self.now))
+        self._talks.start(task, source, self.now)
+
+    # What conversations come to
+
+    def _concluded(self, task: Task, award: Award) -> None:
+        """A conversation has ended: somebody goes, or nobody can."""
+        robots, site = self.fleet.robots, task.event.position
         found = squared_distance(robots[award.auctioneer].position, site)
         if award.winner is not None:
             found = min(found, squared_distance(robots[award.winner].position, site))
-        x, y = site
-        for id in self._on_air:
-            px, py = robots[id].position
-            if (px - x) * (px - x) + (py - y) * (py - y) < found:
-                return False
-        return True
+        self.tally.closest += self._crew.nobody_nearer(site, found)
+        self._tell(lambda o: o.awarded(task.event, award, self.now))
+        if task.state is not State.REPORTED:
+            return  # it expired while it was talked over
+        winner = None if award.winner is None else robots[award.winner]
+        if winner is None:
+            self._put_off(task, "nobody could take it")
+        elif winner.engaged or not winner.able or not winner.alive:
+            self.tally.conflicts += 1
+            self._put_off(task, "the winner was taken")
+        else:
+            self._send(winner, task)
 
-    def _drive(self, robot: Robot, event: Event) -> Trip:
-        """Send the robot to the event and wait for the end of its trip."""
-        motion = self._motion
-        self._tell(lambda o: o.departed(event, robot.id, motion.now))
-        motion.depart(robot, event.position)
-        while not (trips := motion.advance(motion.now + self._link_interval)):
-            self._relink(robot)
-        (trip,) = trips
-        self._settle(robot, event, trip)
-        return trip
+    def _broken_off(self, task: Task, why: str) -> None:
+        """A conversation came to no end. The handler hears nothing, and asks again."""
+        if task.state is State.REPORTED:
+            self._put_off(task, why, silent=True)
 
-    def _settle(self, robot: Robot, event: Event, trip: Trip) -> None:
-        """Count the trip, and let everybody know where the robot is now."""
-        tally = self.tally
-        straight = dist(trip.origin, trip.site)
-        cruise = self.fleet.spec.cruise
-        tally.predicted += self.fleet.spec.power.per_metre(cruise) * straight
+    def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
+        """The task waits; in rounds, where nothing is lost on the air, life is over."""
+        timing = self._course.timing
+        if isinstance(timing, Rounds):
+            patience = timing.offers if self._talks.radio.takes_time else 1
+            if task.offers < patience and self._crew.on_air:
+                self._agenda.at(self.now, partial(self._offer, task))
+                return
+            self._close(task, State.LOST, why)
+            self._over = True
+            return
+        if task.offers >= timing.offers:
+            self._close(task, State.LOST, f"offered {task.offers} times: {why}")
+            return
+        task.state = State.WAITING
+        wait = min(timing.backoff * 2.0 ** min(task.offers - 1, 30), timing.backoff_most)
+        if silent:
+            wait = max(wait, timing.patience)
+        self._agenda.at(self.now + wait, partial(self._offer, task))
+
+    # Driving
+
+    def _send(self, robot: Robot, task: Task) -> None:
+        """The robot sets off."""
+        task.state, task.taken = State.TAKEN, self.now
+        robot.engaged = True
+        self._since[robot.id] = self.now
+        self._trips[robot.id] = task
+        self._tell(lambda o: o.departed(task.event, robot.id, self.now))
+        self._motion.depart(robot, task.event.position)
+
+    def _settle(self, robot: Robot, trip: Trip) -> None:
+        """A trip has ended: count it; the event is served, or raised again."""
+        task = self._trips.pop(robot.id)
+        tally, spec = self.tally, self.fleet.spec
+        tally.predicted += spec.power.per_metre(spec.cruise) * dist(trip.origin, trip.site)
         tally.distance += dist(trip.origin, trip.end)
         tally.path += trip.path
         if trip.outcome != "arrived":
             robot.failed_sites.add(trip.site)
         if robot.battery.charge == 0.0:
-            robot.alive = False
-            self._on_air.remove(robot.id)
-        self._relink(robot)
-        self._tell(lambda o: o.trip_ended(event, trip))
-
-    def _relink(self, robot: Robot) -> None:
-        """Bring the links up to date with a robot that moved, or fell silent."""
-        if robot.alive:
-            self.fleet.topology.move(robot.id, robot.position)
+            self._crew.bury(robot)
+        self._tell(lambda o: o.trip_ended(task.event, trip))
+        if trip.outcome != "arrived":
+            tally.failed += 1
+            self._release(robot)
+            self._raise_again(robot, task)
+            return
+        task.reached = self.now
+        self._handler.hear_from(robot)
+        if task.service > 0.0 and robot.alive:
+            self._agenda.at(self.now + task.service, partial(self._served, robot, task))
         else:
-            self.fleet.topology.remove(robot.id)
-        if self._observers:
-            now, samples = self._motion.now, self._motion.samples()
-            self._tell(lambda o: o.moved(samples))
-            self._tell(lambda o: o.relinked(now))
+            self._served(robot, task)
+
+    def _served(self, robot: Robot, task: Task) -> None:
+        """The robot has done its work, unless it broke down over it."""
+        self._release(robot)
+        if task.state is not State.TAKEN:
+            return
+        if not robot.alive and task.service > 0.0:
+            self._raise_again(robot, task)
+            return
+        self.tally.served += 1
+        self._close(task, State.SERVED)
+
+    def _release(self, robot: Robot) -> None:
+        """The robot is free again."""
+        robot.engaged = False
+        self.tally.engaged += self.now - self._since.pop(robot.id)
+
+    def _raise_again(self, robot: Robot, task: Task) -> None:
+        """Its robot did not make it: ask for another, at once or when its silence is noticed."""
+        task.state = State.WAITING
+        timing = self._course.timing
+        if isinstance(timing, Rounds) or robot.on_air:
+            self._offer_again(task)
+        else:
+            self._agenda.at(self.now + timing.patience, partial(self._offer, task))
+
+    def _offer_again(self, task: Task) -> None:
+        """At once, unless its deadline has passed."""
+        if self.now - task.raised > task.deadline:
+            self._close(task, State.EXPIRED)
+        elif self._crew.on_air:
+            task.offers = 0 if isinstance(self._course.timing, Rounds) else task.offers
+            self._offer(task)
+        else:
+            self._put_off(task, "nobody is on the air")
+
+    # How things go wrong
+
+    def _expire(self, task: Task) -> None:
+        if task.state in (State.REPORTED, State.WAITING):
+            self._close(task, State.EXPIRED)
+
+    def _break_down(self, fault: Breakdown) -> None:
+        """A motor, or a whole robot, fails."""
+        robot = self.fleet.robots[fault.robot]
+        if not robot.alive or (fault.what == "motor" and not robot.able):
+            return
+        self.tally.breakdowns += 1
+        robot.able = False
+        if robot.id in self._trips:
+            self._motion.halt(robot)
+        if fault.what == "all":
+            self._crew.bury(robot)
+
+    def _summary(self, wall_time: float) -> Summary:
+        timing, radio = self._course.timing, self._talks.radio
+        figures = None
+        if isinstance(timing, Stream):
+            figures = stream_figures(
+                self.book, self.tally, len(self.fleet.robots), self.now, timing.backoff_most,
+                radio.beacons, self._handler.sensor_messages,
+            )  # fmt: skip
+        return summarise(self.fleet, self.tally, len(self.book.tasks), self.now, wall_time, figures)
 
     def _tell(self, hook: Callable[[Observer], None]) -> None:
         for observer in self._observers:
             hook(observer)
-
-    def _summary(self, wall_time: float) -> Summary:
-        fleet, tally, labels = self.fleet, self.tally, self.fleet.labels
-        n = len(fleet.robots)
-        left = [robot.battery.charge for robot in fleet.robots]
-        initial = fsum(robot.battery.capacity for robot in fleet.robots)
-        mean = fsum(left) / n
-        by_kind: dict[str, int] = {kind: tally.kinds[kind] for kind in KINDS}
-        messages = sum(by_kind.values())
-        return Summary(
-            protocol=labels.protocol,
-            motion=labels.motion,
-            world=labels.world,
-            seed=labels.seed,
-            robots=n,
-            radio_range=fleet.topology.radio_range,
-            search_radius=labels.search_radius,
-            lifetime=tally.served,
-            events=tally.events,
-            served=tally.served,
-            failed=tally.failed,
-            messages=messages,
-            messages_per_robot=messages / n,
-            messages_by_kind=by_kind,
-            hops_greedy=by_kind["route-greedy"],
-            hops_face=by_kind["route-face"],
-            energy_initial=initial,
-            energy_predicted=tally.predicted,
-            energy_drained=initial - fsum(left),
-            energy_left_mean=mean,
-            energy_left_min=min(left),
-            energy_left_sd=sqrt(fsum((charge - mean) ** 2 for charge in left) / n),
-            reactions_per_robot=tally.served / n,
-            distance_per_robot=tally.distance / n,
-            path_per_robot=tally.path / n,
-            closest_found=tally.closest / max(tally.conversations, 1),
-            simulated_time=self._motion.now,
-            wall_time=wall_time,
-        )

@@ -47,7 +47,7 @@ def _cell(value, origin, size, count):
 
 
 @kernel
-def _gather(x, y, reach, robot, px, py, head, after, grid, marked, near, count):
+def gather(x, y, reach, robot, px, py, head, after, grid, marked, near, count):
     """Append to ``near`` the robots within ``reach`` [m] of (x, y) that are not marked yet."""
     x0, y0, size = grid[0], grid[1], grid[2]
     columns, rows = int(grid[3]), int(grid[4])
@@ -67,7 +67,16 @@ def _gather(x, y, reach, robot, px, py, head, after, grid, marked, near, count):
 
 
 @kernel
-def _move_cell(robot, x, y, px, py, head, after, grid):
+def move_cell(
+    robot: int,
+    x: float,
+    y: float,
+    px: FloatArray,
+    py: FloatArray,
+    head: IntArray,
+    after: IntArray,
+    grid: FloatArray,
+) -> None:
     """Take the robot out of its cell, put it where it is now. NaN: in no cell."""
     x0, y0, size = grid[0], grid[1], grid[2]
     columns, rows = int(grid[3]), int(grid[4])
@@ -157,9 +166,9 @@ def relink(
     was_there, is_there = not math.isnan(old_x), not math.isnan(x)
     count = 0
     if was_there:
-        count = _gather(old_x, old_y, reach, robot, px, py, head, after, grid, marked, near, count)
+        count = gather(old_x, old_y, reach, robot, px, py, head, after, grid, marked, near, count)
     if is_there:
-        count = _gather(x, y, reach, robot, px, py, head, after, grid, marked, near, count)
+        count = gather(x, y, reach, robot, px, py, head, after, grid, marked, near, count)
     for k in range(count):
         marked[near[k]] = False
     for k in range(count):
@@ -168,7 +177,7 @@ def relink(
     if count + 1 > links.shape[1]:
         return -1
 
-    _move_cell(robot, x, y, px, py, head, after, grid)
+    move_cell(robot, x, y, px, py, head, after, grid)
     for k in range(degree[robot]):
         marked[links[robot, k]] = True
     while degree[robot] > 0:

@@ -47,6 +47,13 @@ class Arena:
         """Everything drawn on the floor."""
         return self.obstacles if self.hole is None else (self.hole, *self.obstacles)
 
+    def is_free(self, points: FloatArray) -> NDArray[np.bool_]:
+        """Which of ``points`` (k, 2) [m] no obstacle covers (k,)."""
+        free = np.ones(len(points), bool)
+        for obstacle in self.obstacles:
+            free &= obstacle.distance(points) > 0.0
+        return free
+
     def random_points(self, count: int, margin: float, rng: np.random.Generator) -> FloatArray:
         """``count`` points (count, 2) [m], uniform over the rectangle ``margin`` off the walls."""
         low = np.array([margin, margin])

@@ -1,4 +1,4 @@
-"""The worlds by name. One line here puts a world into scenario files."""
+"""The worlds and event processes by name. One line here puts one into scenario files."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from worlds import events
 from worlds.arena import Arena, FloatArray, given, scatter
-from worlds.events import uniform_sites
+from worlds.events import Occurrence
 from worlds.shapes import Corner, Disc, Polygon, square
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
@@ -18,11 +19,10 @@ PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A floor, a way to start robots on it, and the sites where events happen."""
+    """A floor, and a way to start robots on it."""
 
     arena: Arena
     place: Callable[[Arena, int, float, np.random.Generator], FloatArray] = scatter
-    sites: Callable[[Arena, np.random.Generator], Iterator[Corner]] = uniform_sites
     robots: int = 100  # unless the scenario asks for another number
     fixed: bool = False  # whether the robots start in the same places every time
 
@@ -31,6 +31,13 @@ class Entry(NamedTuple):
     """A function that makes a world from its parameters, and where it comes from."""
 
     function: Callable[..., World]
+    source: str
+
+
+class EventsEntry(NamedTuple):
+    """An event process, its parameters by keyword, and where it comes from."""
+
+    function: Callable[..., Iterator[Occurrence]]  # arena, rate, generators of places and times
     source: str
 
 
@@ -59,6 +66,8 @@ def random_hole(
 
 def placed(*, positions: FloatArray, width: float = 10.0, height: float = 10.0) -> World:
     """Robots start where a CSV file (columns x, y in metres) puts them; events fall anywhere."""
+    if positions.shape[1] != 2:
+        raise ValueError(f"positions have {positions.shape[1]} columns; expected x and y")
     arena = Arena(width, height)
     inside = (positions >= 0.0) & (positions <= np.array([width, height]))
     if not inside.all():
@@ -75,4 +84,11 @@ WORLDS: dict[str, Entry] = {
     "placed": Entry(placed, "a file of the user's"),
     "random": Entry(random, PAPER),
     "random-hole": Entry(random_hole, PAPER),
+}
+
+EVENTS: dict[str, EventsEntry] = {
+    "bursts": EventsEntry(events.bursts, "Poisson cluster process"),
+    "hot-spots": EventsEntry(events.hot_spots, "Poisson process in a mixture of places"),
+    "trace": EventsEntry(events.trace, "a file of the user's"),
+    "uniform": EventsEntry(events.uniform, f"{PAPER}; in a stream a Poisson process"),
 }

@@ -6,13 +6,13 @@ import inspect
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import is_dataclass
-from functools import partial
-from typing import Any, TypeVar
+from functools import cache, partial
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
 from fleet.scenario.errors import BadInput, bad, sentence, unknown
-from fleet.scenario.places import places
+from fleet.scenario.numbers import numbers
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
 from protocols.metrics import Metric
@@ -46,12 +46,14 @@ def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> part
     return partial(function, **values)
 
 
+@cache
 def keywords(function: Callable[..., Any]) -> dict[str, Any]:
     """The parameters that a table may set, with their types."""
     parameters = inspect.signature(function, eval_str=True).parameters.values()
     return {p.name: p.annotation for p in parameters if p.kind is p.KEYWORD_ONLY}
 
 
+@cache
 def required(function: Callable[..., Any]) -> set[str]:
     """The keyword parameters that have no default."""
     parameters = inspect.signature(function).parameters.values()
@@ -67,11 +69,11 @@ def convert(kind: Any, value: Any, key: str) -> Any:
     if kind == Metric:
         return metric(value, key)
     if kind == FloatArray:
-        return places(value, key)
+        return numbers(value, key)
     problems = list(_unknown_keys(kind, value, key))
     if not problems:
         try:
-            return TypeAdapter(kind).validate_json(json.dumps(value), strict=True)
+            return adapter(kind).validate_json(json.dumps(value), strict=True)
         except ValidationError as error:
             problems = [
                 (
@@ -81,6 +83,19 @@ def convert(kind: Any, value: Any, key: str) -> Any:
                 for e in error.errors(include_url=False)
             ]
     raise BadInput(problems)
+
+
+@cache
+def adapter(kind: Any) -> TypeAdapter[Any]:
+    """The checker of a type; making one takes a thousand times as long as using it."""
+    return TypeAdapter(kind)
+
+
+@cache
+def field_types(kind: type) -> dict[str, Any]:
+    """The fields of a dataclass with their types."""
+    parameters = inspect.signature(kind, eval_str=True).parameters.values()
+    return {p.name: p.annotation for p in parameters}
 
 
 def metric(value: Any, key: str) -> Metric:
@@ -126,12 +141,16 @@ def _unknown_parameter(name: str, accepted: Mapping[str, Any]) -> str:
 
 
 def _unknown_keys(kind: Any, value: Any, key: str) -> list[tuple[str, str]]:
-    """Keys of nested tables that their dataclass does not have."""
+    """Keys of nested tables, and of tables in lists, that their dataclass does not have."""
+    inner = [part for part in get_args(kind) if part is not type(None)]
+    if get_origin(kind) is tuple and isinstance(value, list):
+        listed = enumerate(value)
+        return [p for k, item in listed for p in _unknown_keys(inner[0], item, f"{key}[{k}]")]
+    if len(inner) == 1:  # something, or None
+        return _unknown_keys(inner[0], value, key)
     if not (is_dataclass(kind) and isinstance(kind, type) and isinstance(value, Mapping)):
         return []
-    fields = {
-        p.name: p.annotation for p in inspect.signature(kind, eval_str=True).parameters.values()
-    }
+    fields = field_types(kind)
     problems = []
     for name, item in value.items():
         dotted = f"{key}.{name}" if key else name

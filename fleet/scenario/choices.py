@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from fleet.motion import Motion
 from fleet.motion.catalogue import MOTIONS
+from fleet.radio.catalogue import RADIOS
+from fleet.radio.lossy import RadioSpec
 from fleet.robot import RobotSpec
 from fleet.scenario.binding import bind, build, keywords
 from fleet.scenario.errors import bad, unknown
 from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
+from fleet.timing import TIMINGS, Rounds, Stream
 from protocols.catalogue import PROTOCOLS
 from protocols.messages import Conversation, ProtocolFunction
 from worlds.arena import Arena
-from worlds.catalogue import WORLDS, World
+from worlds.catalogue import EVENTS, WORLDS, World
+from worlds.events import Occurrence
 
 
 def check(scenario: Scenario) -> None:
@@ -27,6 +31,9 @@ def check(scenario: Scenario) -> None:
     bind_protocol(scenario)
     make_world(scenario.world)
     motion_options(scenario.motion)
+    make_timing(scenario.time)
+    radio_spec(scenario.radio)
+    bind_events(scenario.events)
 
 
 def bind_protocol(scenario: Scenario) -> ProtocolFunction:
@@ -88,3 +95,38 @@ def motion_options(choice: Choice) -> Any:
     if choice.name not in MOTIONS:
         raise bad("motion", unknown("motion", choice.name, MOTIONS))
     return build(MOTIONS[choice.name].options, choice.parameters, "motion")
+
+
+def make_timing(choice: Choice) -> Rounds | Stream:
+    """How time goes, by name.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    if choice.name not in TIMINGS:
+        raise bad("time", unknown("time", choice.name, TIMINGS))
+    timing: Rounds | Stream = build(TIMINGS[choice.name].function, choice.parameters, "time")
+    return timing
+
+
+def radio_spec(choice: Choice) -> RadioSpec | None:
+    """What the lossy radio is like; None: the radio is ideal.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    if choice.name not in RADIOS:
+        raise bad("radio", unknown("radio", choice.name, RADIOS))
+    spec: RadioSpec | None = build(RADIOS[choice.name].function, choice.parameters, "radio")
+    return spec
+
+
+def bind_events(choice: Choice) -> Callable[..., Iterator[Occurrence]]:
+    """The event process of that name: to be called with arena, rate and two generators.
+
+    Raises:
+        BadInput: there is none of that name, or a parameter does not fit.
+    """
+    if choice.name not in EVENTS:
+        raise bad("events", unknown("events", choice.name, EVENTS))
+    return bind(EVENTS[choice.name].function, choice.parameters, "events")

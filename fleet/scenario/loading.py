@@ -15,7 +15,7 @@ from fleet.scenario.choices import check
 from fleet.scenario.errors import BadInput, bad, unknown
 from fleet.scenario.model import Choice, Scenario, plain
 
-CHOICES = ("protocol", "world", "motion")
+CHOICES = ("protocol", "world", "motion", "time", "events", "radio")
 NAMED_BY = dict.fromkeys(CHOICES, "name") | {"robot": "preset"}
 
 

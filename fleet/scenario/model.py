@@ -7,8 +7,11 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from math import inf
 from typing import Any
 
+from fleet.faults import Faults
+from fleet.handler import HandlerName
 from fleet.robot import RobotSpec
 from protocols.topology import GraphName
+from worlds.sensors import SensorSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +42,13 @@ class Scenario:
     search_radius: float = 2.0  # SR [m]
     graph: GraphName = "gabriel"
     connected: bool = True  # whether the network must be connected at the start
-    rounds: int | None = None  # None: a whole network lifetime
+    rounds: int | None = None  # served; in a stream, events raised. None: a whole lifetime
+    time: Choice = Choice("rounds")
+    events: Choice = Choice("uniform")
+    radio: Choice = Choice("ideal")
+    faults: Faults = Faults()
+    sensors: SensorSpec | None = None  # None: the handler knows of every event at once
+    handler: HandlerName = "random"
     seed: int = 0
     robot: RobotSpec = RobotSpec()
 

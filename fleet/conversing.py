@@ -1,0 +1,160 @@
+"""Letting protocols talk: one conversation after another or many at once, over any radio."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import inf
+
+from fleet.agenda import Agenda
+from fleet.observer import Observer, Sent
+from fleet.radio import Radio
+from fleet.results import Tally
+from fleet.robot import Robot
+from fleet.tasks import Task
+from protocols.messages import Award, Conversation, Heard, ProtocolFunction, RobotId, Transmission
+
+HOPS_PER_ROBOT = 10  # after which a packet is said to go round in circles
+RESTARTS = 3  # searches begun anew from where the packet stands, before it is given up
+LISTENING = 2.0  # how long an auctioneer waits for bids once it has called [s]
+
+
+@dataclass(slots=True, eq=False)
+class Talk:
+    """A conversation under way."""
+
+    task: Task
+    here: RobotId  # who has the packet: the collecting robot at first
+    words: Conversation
+    hops: int = 0
+    restarts: int = 0
+    called: float = inf  # when its auction was first called [s]
+
+
+Concluded = Callable[[Task, Award], None]
+Broken = Callable[[Task, str], None]
+
+
+@dataclass(slots=True, eq=False)
+class Conversations:
+    """Plays protocols over a radio, and writes down what is said.
+
+    Over a radio that takes no time a conversation is over when :meth:`start` returns. Else it
+    goes on by the agenda, while robots drive, fail, and talk about other things.
+    """
+
+    protocol: ProtocolFunction
+    robots: Sequence[Robot]
+    radio: Radio
+    agenda: Agenda
+    tally: Tally
+    observers: Sequence[Observer]
+    frame_energy: float  # that a sender pays for each frame [J]
+    concluded: Concluded
+    broken: Broken
+    under_way: int = 0
+    _number: int = field(default=0, init=False)
+
+    def start(self, task: Task, source: RobotId, now: float) -> None:
+        """Tell ``source`` of the task; what it comes to is told to ``concluded``."""
+        self.under_way += 1
+        task.offers += 1
+        self.tally.conversations += 1
+        words = self.protocol(self.robots, task.event, source)
+        if self.radio.takes_time:
+            self._go_on(Talk(task, source, words), None, now)
+        else:
+            self._play_at_once(task, words, now)
+
+    def _play_at_once(self, task: Task, words: Conversation, now: float) -> None:
+        """The whole conversation, over a radio that takes no time and loses nothing."""
+        say, transmit, kinds = words.send, self.radio.transmit, self.tally.kinds
+        heard = None
+        try:
+            while True:
+                transmission = say(heard)  # type: ignore[arg-type]  # None starts a generator
+                heard = transmit(transmission, now).heard
+                kinds[transmission.kind] += 1
+                self._number += 1
+                if self.observers or self.frame_energy:
+                    self._note(task, transmission, heard, now)
+        except StopIteration as end:
+            award: Award = end.value
+        self.under_way -= 1
+        self.concluded(task, award)
+
+    def _go_on(self, talk: Talk, heard: Heard | None, now: float) -> None:
+        """Play until what is on the air has been heard, or all is said."""
+        say, robots = talk.words.send, self.robots
+        while True:
+            try:
+                transmission = say(heard)  # type: ignore[arg-type]  # None starts a generator
+            except StopIteration as end:
+                self.under_way -= 1
+                self.concluded(talk.task, end.value)
+                return
+            if robots[transmission.sender].on_air:
+                break
+            if transmission.kind not in ("bid", "call"):
+                self._break(talk, f"robot {transmission.sender} fell silent")
+                return
+            heard = ()  # it would have said it, were it still there
+        reception = self.radio.transmit(transmission, now)
+        self.tally.kinds[transmission.kind] += 1
+        self._number += 1
+        self._note(talk.task, transmission, reception.heard, now, reception.attempts)
+        heard = self._in_time(talk, transmission, reception.heard, now)
+        self._wait(talk, heard, now + reception.delay)
+
+    def _note(
+        self,
+        task: Task,
+        transmission: Transmission,
+        heard: Heard,
+        now: float,
+        attempts: int = 1,
+    ) -> None:
+        """Tell observers of a transmission, charge its sender."""
+        self.tally.repeated += attempts - 1
+        for observer in self.observers:
+            observer.sent(Sent(self._number, now, task.event.id, transmission, heard, attempts))
+        if self.frame_energy:
+            self.robots[transmission.sender].battery.drain(self.frame_energy * attempts)
+
+    def _in_time(self, talk: Talk, transmission: Transmission, heard: Heard, now: float) -> Heard:
+        """What counts as heard over a radio that takes time: late bids do not."""
+        if not heard:
+            self.tally.unheard += 1
+        if transmission.kind == "call":
+            talk.called = min(talk.called, now)
+        elif transmission.kind == "bid" and now - talk.called > LISTENING:
+            return ()
+        elif transmission.kind.startswith("route"):
+            talk.hops += 1
+            if heard:
+                talk.here = heard[0]
+        return heard
+
+    def _wait(self, talk: Talk, heard: Heard, until: float) -> None:
+        if talk.hops > HOPS_PER_ROBOT * len(self.robots):
+            self.agenda.at(until, lambda: self._restart(talk, until))
+        else:
+            self.agenda.at(until, lambda: self._go_on(talk, heard, until))
+
+    def _restart(self, talk: Talk, now: float) -> None:
+        """The packet has gone round in circles: search anew from where it stands."""
+        talk.words.close()
+        if talk.restarts == RESTARTS or not self.robots[talk.here].on_air:
+            self._break(talk, "its packet went round in circles")
+            return
+        talk.restarts += 1
+        self.tally.restarts += 1
+        talk.hops, talk.called = 0, inf
+        talk.words = self.protocol(self.robots, talk.task.event, talk.here)
+        self._go_on(talk, None, now)
+
+    def _break(self, talk: Talk, why: str) -> None:
+        talk.words.close()
+        self.under_way -= 1
+        self.tally.broken += 1
+        self.broken(talk.task, why)

@@ -1,0 +1,134 @@
+"""Where everybody is, and who is on the air: kept up to date as robots drive and fail."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fleet.faults import Blackout
+from fleet.motion import Motion
+from fleet.observer import Observer
+from fleet.radio import Radio
+from fleet.robot import Robot
+from protocols.messages import Point, RobotId
+
+if TYPE_CHECKING:
+    from fleet.simulation import Fleet
+
+REFRESH = 0.1  # links are at most so old while robots drive and anybody talks or beacons [s]
+
+
+class Crew:
+    """The fleet's robots as they are now, for the radio, the handler and observers.
+
+    ``on_air`` lists the robots that can be talked to, ascending.
+    """
+
+    def __init__(
+        self, fleet: Fleet, radio: Radio, motion: Motion, observers: Sequence[Observer]
+    ) -> None:
+        self.on_air: list[RobotId] = [robot.id for robot in fleet.robots]
+        self._fleet = fleet
+        self._radio = radio
+        self._motion = motion
+        self._observers = observers
+        places = np.array([robot.position for robot in fleet.robots], float).reshape(-1, 2)
+        self._x, self._y = places[:, 0].copy(), places[:, 1].copy()
+        self._slice = min((o.link_interval or inf for o in observers), default=inf)
+        if radio.takes_time:
+            self._slice = min(self._slice, REFRESH)
+        self._refreshed = 0.0
+        self._true_links = bool(observers) and radio.takes_time
+        self._blackouts: list[Blackout] = []
+        self._idle = fleet.spec.extra.idle  # [W]
+        self._paid = 0.0  # until when parked robots have paid idle power [s]
+
+    def slice_end(self, now: float, due: float) -> float:
+        """How far to drive before links must be looked at again, at most to ``due`` [s]."""
+        return min(due, now + self._slice) if self._motion.moving else due
+
+    def follow(self, now: float, arrived: Sequence[RobotId] = ()) -> None:
+        """Robots have driven: tell the radio, and observers, where they are."""
+        robots = self._fleet.robots
+        moved = [*self._motion.moving, *(robots[id] for id in arrived)]
+        for robot in moved:
+            self._x[robot.id], self._y[robot.id] = robot.position
+        if self._blackouts:
+            self._listen_anew(now)
+        if self._idle:
+            self._pay_idle(now)
+        self._radio.refresh(moved, now)
+        self._refreshed = now
+        if self._observers and moved:
+            self._show(moved, now)
+
+    def freshen(self, now: float) -> None:
+        """Before anybody talks: links that are too old are brought up to date."""
+        if self._idle:
+            self._pay_idle(now)
+        if now - self._refreshed >= REFRESH and self._motion.moving:
+            self.follow(now)
+
+    def bury(self, robot: Robot) -> None:
+        """The robot is gone: its battery is empty, or it broke down altogether."""
+        robot.alive = False
+        self._x[robot.id] = self._y[robot.id] = np.nan
+        self._update_air(robot)
+        if self._true_links:
+            self._fleet.topology.remove(robot.id)
+
+    def black_out(self, blackout: Blackout, now: float) -> None:
+        """The radio of a region falls silent."""
+        self._blackouts.append(blackout)
+        self._listen_anew(now)
+
+    def lift(self, blackout: Blackout, now: float) -> None:
+        """The radio of a region is back."""
+        self._blackouts.remove(blackout)
+        self._listen_anew(now)
+
+    def nobody_nearer(self, site: Point, squared: float) -> bool:
+        """Whether no living robot is nearer to ``site`` [m] than the root of ``squared``."""
+        dx, dy = self._x - site[0], self._y - site[1]
+        return not (dx * dx + dy * dy < squared).any()
+
+    def _listen_anew(self, now: float) -> None:
+        """Who is in a silent region, now that robots or regions have changed."""
+        for robot in self._fleet.robots:
+            silenced = any(blackout.covers(robot.position) for blackout in self._blackouts)
+            if silenced != robot.silenced:
+                robot.silenced = silenced
+                self._update_air(robot)
+
+    def _update_air(self, robot: Robot) -> None:
+        listed = robot.id in self.on_air
+        if robot.on_air and not listed:
+            self.on_air = sorted([*self.on_air, robot.id])
+            self._radio.restore(robot)
+        elif listed and not robot.on_air:
+            self.on_air.remove(robot.id)
+            self._radio.silence(robot)
+
+    def _pay_idle(self, now: float) -> None:
+        """Parked robots pay for standing; those that cannot are gone."""
+        energy = self._idle * (now - self._paid)
+        self._paid = now
+        driving = {robot.id for robot in self._motion.moving}
+        for robot in self._fleet.robots:
+            if robot.alive and robot.id not in driving:
+                robot.battery.drain(energy)
+                if robot.battery.charge == 0.0:
+                    self.bury(robot)
+
+    def _show(self, moved: Iterable[Robot], now: float) -> None:
+        if self._true_links:
+            for robot in moved:
+                if robot.alive:
+                    self._fleet.topology.move(robot.id, robot.position)
+        samples = self._motion.samples()
+        for observer in self._observers:
+            observer.moved(samples)
+            observer.relinked(now)

@@ -1,0 +1,53 @@
+"""Who receives what is sent, and when."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, Protocol
+
+from fleet.robot import Robot
+from protocols.messages import Heard, Point, RobotId, Transmission
+
+
+class BrokenProtocol(RuntimeError):
+    """A protocol did what no protocol may, such as sending over a link that is not there."""
+
+
+class Reception(NamedTuple):
+    """What became of a transmission."""
+
+    heard: Heard
+    delay: float = 0.0  # until the sender knows [s]
+    attempts: int = 1  # frames it took, the sender's alone
+
+
+class Radio(Protocol):
+    """The air between the robots."""
+
+    @property
+    def takes_time(self) -> bool:
+        """Whether transmissions do; then they can also be lost."""
+
+    @property
+    def tables(self) -> Sequence[Mapping[RobotId, Point]]:
+        """By robot: its neighbours in the routing graph, and where they were last known [m]."""
+
+    @property
+    def beacons(self) -> int:
+        """How many beacons were sent so far."""
+
+    def refresh(self, moved: Iterable[Robot], time: float) -> None:
+        """Robots that moved are where they are now; beacons up to ``time`` [s] have been sent."""
+
+    def silence(self, robot: Robot) -> None:
+        """The robot is off the air."""
+
+    def restore(self, robot: Robot) -> None:
+        """The robot is on the air again."""
+
+    def transmit(self, transmission: Transmission, time: float) -> Reception:
+        """Send it now.
+
+        Raises:
+            BrokenProtocol: it is addressed to a robot that the sender does not know.
+        """

@@ -1,0 +1,25 @@
+"""The radios by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from fleet.radio.lossy import RadioSpec
+
+
+class Entry(NamedTuple):
+    """What a radio's parameters make of it (None: ideal), and where it comes from."""
+
+    function: Callable[..., RadioSpec | None]
+    source: str
+
+
+def ideal() -> None:
+    """Every transmission arrives at once; neighbours' positions are always known."""
+
+
+RADIOS: dict[str, Entry] = {
+    "ideal": Entry(ideal, "Stanulovic et al., Sensors 21(18):6149, 2021, section 3"),
+    "lossy": Entry(RadioSpec, "beacons as GPSR, Karp and Kung, MobiCom 2000"),
+}

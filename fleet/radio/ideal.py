@@ -1,0 +1,51 @@
+"""The paper's radio: instant and lossless over the links of the live topology."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from fleet.radio import BrokenProtocol, Reception
+from fleet.robot import Robot
+from protocols.messages import Point, RobotId, Transmission
+from protocols.topology import Topology
+
+
+class IdealRadio:
+    """Every transmission reaches whom it is meant for, and takes no time.
+
+    Robots always know where their neighbours are, so no beacons are sent.
+    """
+
+    takes_time = False
+    beacons = 0
+
+    def __init__(self, topology: Topology) -> None:
+        self._topology = topology
+        self.tables: Sequence[Mapping[RobotId, Point]] = topology.neighbours
+
+    def refresh(self, moved: Iterable[Robot], time: float) -> None:
+        """Bring the links up to date with robots that moved."""
+        for robot in moved:
+            if robot.on_air:
+                self._topology.move(robot.id, robot.position)
+
+    def silence(self, robot: Robot) -> None:
+        """Nobody hears the robot any more."""
+        self._topology.remove(robot.id)
+
+    def restore(self, robot: Robot) -> None:
+        """The robot is heard again."""
+        self._topology.move(robot.id, robot.position)
+
+    def transmit(self, transmission: Transmission, time: float) -> Reception:
+        """All neighbours hear a broadcast, the receiver what is addressed to it."""
+        near = self.tables[transmission.sender]
+        receiver = transmission.receiver
+        if receiver is None:
+            return Reception(tuple(near))
+        if receiver not in near:
+            raise BrokenProtocol(
+                f"{transmission.kind} from robot {transmission.sender} to robot {receiver},"
+                f" which is not among its neighbours {tuple(near)}"
+            )
+        return Reception((receiver,))
