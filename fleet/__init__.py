@@ -13,16 +13,24 @@ if TYPE_CHECKING:
     from fleet.observer import Observer
     from fleet.results import Summary
     from fleet.scenario.model import Scenario
+    from fleet.study.design import Study
+    from fleet.study.result import StudyResult
+    from fleet.study.sweeping import sweep
 
-__all__ = ["Observer", "Scenario", "Summary", "__version__", "run"]
+__all__ = [
+    "Observer", "Scenario", "Study", "StudyResult", "Summary", "__version__", "run", "sweep"
+]  # fmt: skip
 
 __version__ = "0.1.0"
 
 _HOMES = {
     "Observer": "fleet.observer",
     "Scenario": "fleet.scenario.model",
+    "Study": "fleet.study.design",
+    "StudyResult": "fleet.study.result",
     "Summary": "fleet.results",
     "run": "fleet.assembly",
+    "sweep": "fleet.study.sweeping",
 }
 
 

@@ -8,13 +8,22 @@ from math import inf
 
 from fleet.agenda import Agenda
 from fleet.observer import Observer, Sent
-from fleet.radio import Radio
+from fleet.radio import BrokenProtocol, Radio
 from fleet.results import Tally
 from fleet.robot import Robot
 from fleet.tasks import Task
-from protocols.messages import Award, Conversation, Heard, ProtocolFunction, RobotId, Transmission
+from protocols.messages import (
+    Award,
+    Conversation,
+    Heard,
+    ProtocolFunction,
+    RobotId,
+    Transmission,
+    View,
+)
 
 HOPS_PER_ROBOT = 10  # after which a packet is said to go round in circles
+WORDS_PER_ROBOT = 1000  # after which a protocol is said to talk for ever
 RESTARTS = 3  # searches begun anew from where the packet stands, before it is given up
 LISTENING = 2.0  # how long an auctioneer waits for bids once it has called [s]
 
@@ -44,6 +53,7 @@ class Conversations:
     """
 
     protocol: ProtocolFunction
+    view: View
     robots: Sequence[Robot]
     radio: Radio
     agenda: Agenda
@@ -60,7 +70,7 @@ class Conversations:
         self.under_way += 1
         task.offers += 1
         self.tally.conversations += 1
-        words = self.protocol(self.robots, task.event, source)
+        words = self.protocol(self.view, task.event, source)
         if self.radio.takes_time:
             self._go_on(Talk(task, source, words), None, now)
         else:
@@ -69,6 +79,7 @@ class Conversations:
     def _play_at_once(self, task: Task, words: Conversation, now: float) -> None:
         """The whole conversation, over a radio that takes no time and loses nothing."""
         say, transmit, kinds = words.send, self.radio.transmit, self.tally.kinds
+        most = self._number + WORDS_PER_ROBOT * len(self.robots)
         heard = None
         try:
             while True:
@@ -76,6 +87,11 @@ class Conversations:
                 heard = transmit(transmission, now).heard
                 kinds[transmission.kind] += 1
                 self._number += 1
+                if self._number > most:
+                    raise BrokenProtocol(
+                        f"the conversation about event {task.event.id} does not end; last said:"
+                        f" {transmission}"
+                    )
                 if self.observers or self.frame_energy:
                     self._note(task, transmission, heard, now)
         except StopIteration as end:
@@ -150,7 +166,7 @@ class Conversations:
         talk.restarts += 1
         self.tally.restarts += 1
         talk.hops, talk.called = 0, inf
-        talk.words = self.protocol(self.robots, talk.task.event, talk.here)
+        talk.words = self.protocol(self.view, talk.task.event, talk.here)
         self._go_on(talk, None, now)
 
     def _break(self, talk: Talk, why: str) -> None:

@@ -12,8 +12,8 @@ from fleet.faults import Blackout
 from fleet.motion import Motion
 from fleet.observer import Observer
 from fleet.radio import Radio
-from fleet.robot import Robot
-from protocols.messages import Point, RobotId
+from fleet.robot import Robot, SeenRobot
+from protocols.messages import Point, RobotId, View
 
 if TYPE_CHECKING:
     from fleet.simulation import Fleet
@@ -24,12 +24,23 @@ REFRESH = 0.1  # links are at most so old while robots drive and anybody talks o
 class Crew:
     """The fleet's robots as they are now, for the radio, the handler and observers.
 
-    ``on_air`` lists the robots that can be talked to, ascending.
+    ``on_air`` lists the robots that can be talked to, ascending; ``view`` is what conversations
+    see: the robots themselves, or, while many drive, all as of the last refresh.
     """
 
     def __init__(
-        self, fleet: Fleet, radio: Radio, motion: Motion, observers: Sequence[Observer]
+        self,
+        fleet: Fleet,
+        radio: Radio,
+        motion: Motion,
+        observers: Sequence[Observer],
+        *,
+        many_drive: bool,
     ) -> None:
+        self.view: View = fleet.robots
+        self._seen = [SeenRobot(robot) for robot in fleet.robots] if many_drive else []
+        if many_drive:
+            self.view = self._seen
         self.on_air: list[RobotId] = [robot.id for robot in fleet.robots]
         self._fleet = fleet
         self._radio = radio
@@ -56,6 +67,8 @@ class Crew:
         moved = [*self._motion.moving, *(robots[id] for id in arrived)]
         for robot in moved:
             self._x[robot.id], self._y[robot.id] = robot.position
+        for robot in moved if self._seen else ():
+            self._seen[robot.id].position = robot.position
         if self._blackouts:
             self._listen_anew(now)
         if self._idle:

@@ -48,6 +48,12 @@ class Observer:
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """A conversation has ended."""
 
+    def broken_off(self, event: Event, reason: str, time: float) -> None:
+        """A conversation came to no end: somebody fell silent, or a packet went in circles."""
+
+    def event_closed(self, event: Event, outcome: str, time: float) -> None:
+        """An event is over: "served", "expired" or "lost"."""
+
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """A robot sets off to an event."""
 

@@ -136,3 +136,41 @@ class Robot:
         if self.engaged or not self.able or not self.alive or site in self.failed_sites:
             return inf
         return self._motion.cost(self, site)
+
+
+class SeenRobot:
+    """A robot as a conversation sees it while it may be driving.
+
+    Its position is that at the last time links were brought up to date, so that it agrees with
+    what its neighbours know; all else is as it is.
+    """
+
+    __slots__ = ("_robot", "position")
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self.position = robot.position  # [m]
+
+    @property
+    def id(self) -> RobotId:
+        """Its number, from 0."""
+        return self._robot.id
+
+    @property
+    def radio_range(self) -> float:
+        """How far its radio reaches: r [m]."""
+        return self._robot.radio_range
+
+    @property
+    def energy(self) -> float:
+        """What the battery holds [J]."""
+        return self._robot.energy
+
+    @property
+    def neighbours(self) -> Mapping[RobotId, Point]:
+        """Radio neighbours in the routing graph: last known positions [m]."""
+        return self._robot.neighbours
+
+    def cost_to(self, site: Point) -> float:
+        """The energy it believes that going to ``site`` takes [J]; inf if it cannot go."""
+        return self._robot.cost_to(site)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -83,13 +84,16 @@ class Simulation:
         self._motion = motion
         self._observers = tuple(observers)
         self._agenda = Agenda()
-        self._crew = Crew(fleet, radio, motion, self._observers)
+        many_drive = isinstance(course.timing, Stream)
+        self._crew = Crew(fleet, radio, motion, self._observers, many_drive=many_drive)
         self._talks = Conversations(
-            protocol, fleet.robots, radio, self._agenda, self.tally, self._observers,
-            fleet.spec.extra.transmission, self._concluded, self._broken_off,
+            protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
+            self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
         )  # fmt: skip
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
         self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
+        self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
+        self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
         self._over = False
 
     def run(self) -> Summary:
@@ -147,10 +151,8 @@ class Simulation:
 
     def _expect(self) -> None:
         """Put the next occurrence down: in rounds now, in a stream by its time."""
-        limit = self._course.rounds
         timing = self._course.timing
-        raised = len(self.book.tasks) if isinstance(timing, Stream) else self.tally.served
-        if limit is not None and raised >= limit:
+        if self._enough():
             self._over = self._over or isinstance(timing, Rounds)
             return
         occurrence = next(self._course.occurrences, None)
@@ -160,6 +162,14 @@ class Simulation:
             self._agenda.at(occurrence.time, partial(self._occur, occurrence))
         else:
             self._occur(occurrence)
+
+    def _enough(self) -> bool:
+        """Whether as many rounds as asked for were served, or events raised."""
+        limit = self._course.rounds
+        streaming = isinstance(self._course.timing, Stream)
+        return limit is not None and limit <= (
+            len(self.book.tasks) if streaming else self.tally.served
+        )
 
     def _occur(self, occurrence: Occurrence) -> None:
         """Something happens; word of it comes to the handler, or does not."""
@@ -188,13 +198,24 @@ class Simulation:
     def _close(self, task: Task, state: State, reason: str = "") -> None:
         """A task has come to its end; in rounds the next event may happen."""
         self.book.close(task, state, self.now, reason)
-        if isinstance(self._course.timing, Rounds) and not self.book.open_tasks:
-            self._agenda.at(self.now, self._expect)
+        self._tell(lambda o: o.event_closed(task.event, state.value, self.now))
+        if isinstance(self._course.timing, Rounds):
+            if self._in_hand is task:
+                self._in_hand = None
+            if self._in_line and not self._enough():
+                self._agenda.at(self.now, partial(self._offer, self._in_line.popleft()))
+            elif self._enough() or not self.book.open_tasks:
+                self._agenda.at(self.now, self._expect)
 
     def _offer(self, task: Task) -> None:
         """Tell a robot on the air of the task, and let the protocol talk."""
         if task.state not in (State.REPORTED, State.WAITING):
             return
+        if isinstance(self._course.timing, Rounds):
+            if self._in_hand not in (None, task):
+                self._in_line.append(task)
+                return
+            self._in_hand = task
         task.state = State.REPORTED
         self._crew.freshen(self.now)
         on_air = self._crew.on_air
@@ -228,6 +249,7 @@ class Simulation:
 
     def _broken_off(self, task: Task, why: str) -> None:
         """A conversation came to no end. The handler hears nothing, and asks again."""
+        self._tell(lambda o: o.broken_off(task.event, why, self.now))
         if task.state is State.REPORTED:
             self._put_off(task, why, silent=True)
 

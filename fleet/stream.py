@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf
+from math import dist, inf
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +34,7 @@ class StreamFigures:
     response_median: float | None
     response_p90: float | None
     response_p99: float | None
+    miss_mean: float | None  # from where robots were sent to where events were [m]
     backlog_mean: float  # events waiting for a robot to set off, over time
     backlog_most: int
     throughput: float  # events served a second
@@ -87,6 +88,7 @@ def stream_figures(
         response_median=quantile(0.5),
         response_p90=quantile(0.9),
         response_p99=quantile(0.99),
+        miss_mean=each(sum(dist(task.site, task.event.position) for task in served)),
         backlog_mean=backlog_mean,
         backlog_most=backlog_most,
         throughput=len(served) / duration,

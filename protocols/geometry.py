@@ -38,22 +38,24 @@ def next_around(
 ) -> RobotId | None:
     """The first neighbour met when turning from the direction ``reference`` [rad].
 
-    Turns counter-clockwise unless told otherwise. A neighbour exactly on the reference
-    is met at once on setting out; ``came_from`` is met last, after a full turn, so that a
-    dead end is left the way it was entered. Ties go to the lower id. None if there is
-    nobody.
+    Turns counter-clockwise unless told otherwise. A neighbour exactly on the reference is met
+    at once on setting out; ``came_from`` is met last, after a full turn, so that a dead end is
+    left the way it was entered. Neighbours in one direction, as those in the robot's own place
+    are, stand side by side in the order of their ids, and each is met once in a turn. None if
+    there is nobody.
     """
     best: RobotId | None = None
-    least = 2.0 * TURN
+    least = (2.0 * TURN, 0)
+    sense = -1 if clockwise else 1
     for robot, position in neighbours.items():
+        turn = sense * (bearing(here, position) - reference) % TURN
+        beside = sense * robot
         if robot == came_from:
-            turn = TURN
-        else:
-            turn = (bearing(here, position) - reference) % TURN
-            if clockwise and turn > 0.0:
-                turn = TURN - turn
-        if turn < least:
-            best, least = robot, turn
+            turn = 1.5 * TURN
+        elif came_from is not None and turn == 0.0 and beside < sense * came_from:
+            turn = TURN  # it stands just before the one that we came from
+        if (turn, beside) < least:
+            best, least = robot, (turn, beside)
     return best
 
 

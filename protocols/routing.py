@@ -54,7 +54,8 @@ WHOLE_FACE = Search(radius=0.0)
 def greedy(view: View, source: RobotId, site: Point, reach: float = 0.0) -> Routing:
     """Hop to the neighbour nearest to ``site`` until none is nearer: a local minimum.
 
-    Stops early at a robot within ``reach`` [m] of the site.
+    Stops early at a robot within ``reach`` [m] of the site. Of robots in one place the lowest
+    id is the one that is linked to others, and so the one to go on from.
     """
     here = source
     enough = reach * reach
@@ -66,7 +67,7 @@ def greedy(view: View, source: RobotId, site: Point, reach: float = 0.0) -> Rout
         nearest = here
         for robot, position in me.neighbours.items():
             d = squared_distance(position, site)
-            if d < least:
+            if d < least or (d == least and robot < here and position == me.position):
                 nearest, least = robot, d
         if nearest == here:
             return here
@@ -101,8 +102,8 @@ def deliver(
 ) -> Routing:
     """Greedy-face-greedy to the robot ``destination``, last known at ``site``.
 
-    Returns the robot reached: ``destination`` on every connected static planar graph;
-    any other means that it cannot be reached.
+    Returns the robot reached: ``destination`` on every connected static planar graph in which
+    it has its place to itself; any other means that it cannot be reached.
     """
     here = source
     while True:

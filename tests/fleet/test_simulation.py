@@ -9,7 +9,8 @@ import pytest
 
 import fleet
 from fleet.observer import Observer
-from fleet.radio import BrokenProtocol, IdealRadio
+from fleet.radio import BrokenProtocol
+from fleet.radio.ideal import IdealRadio
 from protocols.messages import Transmission
 from protocols.topology import Topology
 
@@ -170,6 +171,6 @@ def test_a_run_that_breaks_off_still_closes_its_observers():
 
 def test_a_protocol_that_sends_where_nobody_is_is_stopped():
     radio = IdealRadio(Topology([(0.0, 0.0), (1.0, 0.0), (5.0, 0.0)], 2.0))
-    assert radio.deliver(Transmission("call", 0, None)) == (1,)
+    assert radio.transmit(Transmission("call", 0, None), 0.0).heard == (1,)
     with pytest.raises(BrokenProtocol, match="robot 2"):
-        radio.deliver(Transmission("route-greedy", 0, 2))
+        radio.transmit(Transmission("route-greedy", 0, 2), 0.0)

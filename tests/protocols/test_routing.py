@@ -133,6 +133,28 @@ def test_gfgf1_finds_the_nearest_robot_wherever_the_event_is(hand):
             assert dist(view[found].position, event.position) == nearest(view, event.position)
 
 
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_robots_in_one_place_are_passed_by(hand):
+    """Several robots that have served one event stand in one place; the lowest id has the links."""
+    rng = np.random.default_rng(5)
+    search = Search(radius=0.0, hand=hand)
+    for _ in range(40):
+        points = random_connected(30, 6.0, 1.8, rng)
+        crowds = [points[k] for k in rng.integers(0, 30, 12)]
+        order = rng.permutation(42)
+        everybody = [(points + crowds)[k] for k in order]
+        view = network(everybody, 1.8)
+        event = Event(0, random_points(1, 6.0, rng)[0])
+        for source in range(0, 42, 5):
+            found = routed(find, view, source, event, search).award
+            assert dist(view[found].position, event.position) == nearest(view, event.position)
+            destination = (source + 17) % 42
+            if everybody.count(view[destination].position) > 1:
+                continue
+            talk = routed(deliver, view, source, destination, view[destination].position, search)
+            assert talk.award == destination
+
+
 def test_an_unreachable_destination_is_given_up():
     view = network([(0.0, 0.0), (1.0, 0.0), (1.5, 0.9), (9.0, 0.0)], 1.2)
     talk = routed(deliver, view, 0, 3, view[3].position)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from worlds.arena import Arena, ImpossibleWorld, scatter
 from worlds.arena import given as place_given
-from worlds.catalogue import WORLDS, placed, random_hole
-from worlds.events import uniform_sites
+from worlds.catalogue import EVENTS, WORLDS, placed, random_hole
+from worlds.events import trace, uniform_sites
 from worlds.shapes import Disc, Polygon, square
 
 L_SHAPE = Polygon(((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)))
@@ -32,14 +32,49 @@ def test_every_world_starts_robots_where_they_have_room(name):
 
 
 @pytest.mark.parametrize("name", sorted(set(WORLDS) - {"placed"}))
-def test_events_fall_on_the_floor_and_not_into_obstacles(name):
-    world = WORLDS[name].function()
-    sites = world.sites(world.arena, np.random.default_rng(2))
-    drawn = np.array([next(sites) for _ in range(600)])
-    size = np.array([world.arena.width, world.arena.height])
-    assert ((drawn >= 0.0) & (drawn <= size)).all()
-    for obstacle in world.arena.obstacles:
-        assert (obstacle.distance(drawn) > 0.0).all()
+@pytest.mark.parametrize("process", sorted(set(EVENTS) - {"trace"}))
+def test_events_fall_on_the_floor_in_order_and_not_into_obstacles(name, process):
+    arena = WORLDS[name].function().arena
+    happening = EVENTS[process].function(arena, 0.5, *map(np.random.default_rng, (2, 3)))
+    drawn = [next(happening) for _ in range(600)]
+    places = np.array([occurrence.position for occurrence in drawn])
+    times = np.array([occurrence.time for occurrence in drawn])
+    assert ((places >= 0.0) & (places <= [arena.width, arena.height])).all()
+    for obstacle in arena.obstacles:
+        assert (obstacle.distance(places) > 0.0).all()
+    assert (np.diff(times) >= 0.0).all()
+    assert 600 / times[-1] == pytest.approx(0.5, rel=0.35)
+
+
+def test_a_poisson_process_forgets():
+    """Gaps are exponential: as spread as long on average."""
+    happening = EVENTS["uniform"].function(Arena(), 2.0, *map(np.random.default_rng, (4, 5)))
+    gaps = np.diff([0.0, *(next(happening).time for _ in range(4000))])
+    assert gaps.mean() == pytest.approx(0.5, rel=0.05)
+    assert gaps.std() == pytest.approx(0.5, rel=0.08)
+
+
+def test_bursts_and_hot_spots_cluster():
+    def nearest(process):
+        arena = Arena(40.0, 40.0)
+        happening = EVENTS[process].function(arena, 0.5, *map(np.random.default_rng, (6, 7)))
+        places = np.array([next(happening).position for _ in range(300)])
+        gaps = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + 99.0 * np.eye(300)
+        return gaps.min(axis=1).mean()
+
+    assert nearest("bursts") < 0.7 * nearest("uniform")
+    assert nearest("hot-spots") < 0.7 * nearest("uniform")
+
+
+def test_a_trace_says_when_where_and_for_how_long():
+    rows = np.array([[5.0, 1.0, 2.0, np.nan, 9.0], [3.0, 4.0, 4.0, 2.0, np.nan]])
+    drawn = list(trace(Arena(), 1.0, None, None, occurrences=rows))
+    assert [(o.time, o.position) for o in drawn] == [(3.0, (4.0, 4.0)), (5.0, (1.0, 2.0))]
+    assert [(o.service, o.deadline) for o in drawn] == [(2.0, None), (None, 9.0)]
+    with pytest.raises(ValueError, match="outside the arena"):
+        list(trace(Arena(), 1.0, None, None, occurrences=np.array([[1.0, 11.0, 2.0]])))
+    with pytest.raises(ValueError, match="2 columns"):
+        list(trace(Arena(), 1.0, None, None, occurrences=np.array([[1.0, 1.0]])))
 
 
 def test_events_fall_into_the_hole_too():

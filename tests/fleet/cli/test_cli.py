@@ -54,7 +54,8 @@ def fleet(*arguments):
 def test_json_prints_exactly_the_documented_keys():
     result = fleet("run", "--motion", "straight", "--rounds", "5", "--json")
     assert result.exit_code == 0
-    assert list(json.loads(result.stdout)) == KEYS == list(Summary.__dataclass_fields__)
+    assert list(json.loads(result.stdout)) == KEYS
+    assert [*KEYS, "stream"] == list(Summary.__dataclass_fields__)
 
 
 def test_every_option_means_its_scenario_key(tmp_path):
