@@ -45,18 +45,25 @@ MOST_LINKS = 20_000_000  # twice the unit disc links that fit into memory and pa
 COMPILE_ABOVE = 200  # robots from which loading the compiler pays within one run
 
 
-def run(scenario: Scenario, observers: Sequence[Observer] = ()) -> Summary:
+def run(
+    scenario: Scenario, observers: Sequence[Observer] = (), *, compiled: bool | None = None
+) -> Summary:
     """Play the scenario to its end.
+
+    ``compiled`` says whether the topology's loop is compiled where nothing else is; None: if
+    that pays within one run, or the compiler is loaded already. It changes no result.
 
     Raises:
         BadInput: something in the scenario does not exist, or does not fit.
         ImpossibleWorld: no connected network of these robots was found in this world.
     """
-    return prepare(scenario, observers).run()
+    return prepare(scenario, observers, compiled=compiled).run()
 
 
-def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulation:
-    """The simulation of ``scenario``, everybody in place.
+def prepare(
+    scenario: Scenario, observers: Sequence[Observer] = (), *, compiled: bool | None = None
+) -> Simulation:
+    """The simulation of ``scenario``, everybody in place; see :func:`run`.
 
     Raises:
         BadInput: something in the scenario does not exist, or does not fit.
@@ -71,15 +78,10 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     solid = MOTIONS[scenario.motion.name].solid
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     radio_choice = radio_spec(scenario.radio)
-    topology = Topology(
-        points,
-        scenario.range,
-        scenario.graph,
-        compiled=solid
-        or radio_choice is not None
-        or len(points) > COMPILE_ABOVE
-        or "numba" in sys.modules,
-    )
+    if compiled is None:
+        compiled = len(points) > COMPILE_ABOVE or "numba" in sys.modules
+    compiled = compiled or solid or radio_choice is not None
+    topology = Topology(points, scenario.range, scenario.graph, compiled=compiled)
     radio: Radio = IdealRadio(topology)
     if radio_choice is not None:
         radio = lossy_radio(points, scenario, radio_choice, random["radio"])

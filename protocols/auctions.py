@@ -31,6 +31,7 @@ class AuctionRules:
     ``hops`` deep; ``aggregate``: a robot waits for those below it and passes on only the best
     bid; ``separately``: a call goes to each neighbour by itself instead of once to all;
     ``reserve``: the call carries the auctioneer's own bid, and only better ones are sent;
+    ``outbid``: a call passed on carries the bid of whom it comes from, with the same effect;
     ``auctioneer_bids``: it competes, instead of going only if nobody else bids.
 
     Raises:
@@ -41,6 +42,7 @@ class AuctionRules:
     aggregate: bool = False
     separately: bool = False
     reserve: bool = False
+    outbid: bool = False
     auctioneer_bids: bool = False
 
     def __post_init__(self) -> None:
@@ -78,12 +80,18 @@ def auction(
     ``may_bid`` keeps robots from bidding for reasons of their own. The auctioneer takes the
     event only if nobody else bids, unless the rules let it compete.
     """
+
+    def to_beat(caller: RobotId) -> Bid | None:
+        """The bid that a call from ``caller`` carries."""
+        if caller != auctioneer:
+            return offer(view[caller], event, metric) if rules.outbid else None
+        return Bid(metric(view[caller], event.position), caller) if rules.reserve else None
+
     own = offer(view[auctioneer], event, metric)
-    limit = Bid(metric(view[auctioneer], event.position), auctioneer) if rules.reserve else None
-    tree = yield from call(view, auctioneer, rules, limit)
+    tree = yield from call(view, auctioneer, rules, to_beat)
     offers = []
-    for robot in tree:
-        bid = offer(view[robot], event, metric)
+    for robot, caller in tree.items():
+        bid, limit = offer(view[robot], event, metric), to_beat(caller)
         if bid is None or (limit is not None and bid.cost >= limit.cost):
             continue
         if may_bid is None or may_bid(view[robot]):
@@ -116,8 +124,15 @@ def iterated_auction(
     return won
 
 
+def nothing_to_beat(_caller: RobotId) -> None:
+    """A call that carries no bid."""
+
+
 def call(
-    view: View, auctioneer: RobotId, rules: AuctionRules, limit: Bid | None = None
+    view: View,
+    auctioneer: RobotId,
+    rules: AuctionRules,
+    to_beat: Callable[[RobotId], Bid | None] = nothing_to_beat,
 ) -> Generator[Transmission, Heard, Tree]:
     """Call for bids, hop by hop. A robot's parent is whom it heard the call from first."""
     tree: Tree = {}
@@ -128,6 +143,7 @@ def call(
             receivers: list[RobotId | None] = [None]
             if rules.separately:
                 receivers = [r for r in view[caller].neighbours if r != tree.get(caller)]
+            limit = to_beat(caller)
             for receiver in receivers:
                 for robot in (yield Transmission("call", caller, receiver, limit)):
                     if robot != auctioneer and robot not in tree:

@@ -49,11 +49,19 @@ def rfta2ge(
     search: Search = TWO_SR,
     metric: Metric = energy_left,
     aggregate: bool = False,
+    outbid: bool = False,
     auctioneer_bids: bool = False,
 ) -> Conversation:
-    """Route to the event, then auction among the neighbours and their neighbours."""
+    """Route to the event, then auction among the neighbours and their neighbours.
+
+    The paper does not say how bids two hops away come back. Each is relayed by itself, or a
+    neighbour passes on the best (``aggregate``), or hears only of better ones than its own
+    (``outbid``). The winner is the same.
+    """
     found = yield from find(view, source, event, search)
-    rules = AuctionRules(hops=2, aggregate=aggregate, auctioneer_bids=auctioneer_bids)
+    rules = AuctionRules(
+        hops=2, aggregate=aggregate, outbid=outbid, auctioneer_bids=auctioneer_bids
+    )
     return (yield from auction(view, found, event, metric, rules))
 
 

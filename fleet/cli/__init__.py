@@ -11,7 +11,11 @@ from fleet import __version__
 
 COMMANDS = {
     "list": ("fleet.cli.listing", "Protocols, metrics, worlds and motions, with their sources."),
+    "paper": ("fleet.cli.papering", "Reproduce the paper: its figures, tables and claims."),
+    "replay": ("fleet.cli.replaying", "Run one run of a study again, from its key."),
+    "report": ("fleet.cli.reporting", "Write the figures and tables of a study as a page."),
     "run": ("fleet.cli.running", "Play one run and print its summary."),
+    "sweep": ("fleet.cli.sweeping", "Run a study: every combination with every seed."),
     "view": ("fleet.cli.viewing", "Open recordings in the Rerun viewer."),
 }
 

@@ -83,6 +83,20 @@ def test_rfta2ge_reaches_two_hops(aggregate):
     assert up == ([(2, 3)] if aggregate else [(2, 3), (2, 3)])
 
 
+def test_rfta2ge_two_hops_away_only_those_bid_that_outbid_their_caller():
+    view = network(STREET, 1.1, energy=[100, 99, 60, 50, 30, 60, 55])
+    protocol = partial(rfta2ge, search=AT_3, aggregate=True, outbid=True)
+    talk = converse(protocol, view, SITE, 0)
+    calls = {t.sender: t.bid for t, _ in talk.transcript if t.kind == "call"}
+    assert calls[3] is None
+    assert calls[2].robot == 2
+    assert (1, 2) in talk.said("bid")
+    weak = network(STREET, 1.1, energy=[100, 70, 60, 50, 30, 60, 55])
+    talk = converse(protocol, weak, SITE, 0)
+    assert (1, 2) not in talk.said("bid")
+    assert talk.award.winner == 5
+
+
 def test_iterated_extension_walks_uphill_until_nobody_is_fuller():
     view = network(STREET, 1.1, energy=[97, 100, 80, 60, 60, 40, 40])
     talk = converse(partial(rfta2_iterated, search=AT_3), view, (2.0, 0.5), 3)

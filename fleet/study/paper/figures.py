@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -13,21 +13,23 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fleet.study.paper.results import Results
+from fleet.study.statistics import mean_interval
 
 WORLDS = {"random": "(a) random topology", "random-hole": "(b) random topology with hole"}
 NAMES = {
     "rfta1": "RFTA1", "rfta2": "RFTA2", "rfta2ge": "RFTA2GE", "gfgf2": "GFGF2",
     "gfgf2a": "GFGF2A", "7-saap": "7-SAAP", "bfs-7": "BFS-7", "bfs-10": "BFS-10",
-    "rfta2ge-aggregated": "RFTA2GE, bids aggregated",
+    "rfta2ge-aggregated": "RFTA2GE, aggregated",
+    "rfta2ge-outbid": "RFTA2GE, outbidding only",
 }  # fmt: skip
 COLOURS = {  # Okabe and Ito's, which colour-blind readers tell apart
     "rfta2": "#0072B2", "rfta2ge": "#D55E00", "gfgf2a": "#009E73", "rfta1": "#CC79A7",
     "gfgf2": "#009E73", "7-saap": "#E69F00", "bfs-7": "#56B4E9", "bfs-10": "#999999",
-    "rfta2ge-aggregated": "#E69F00",
+    "rfta2ge-aggregated": "#E69F00", "rfta2ge-outbid": "#CC79A7",
 }  # fmt: skip
 RADIUS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MARKERS = "osD^v"
-STYLE = {
+STYLE: Any = {
     "font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "grid.alpha": 0.25, "legend.frameon": False, "svg.fonttype": "none", "svg.hashsalt": "fleet",
     "figure.constrained_layout.use": True,
@@ -86,31 +88,24 @@ def draw_all(results: Results, energies: dict[str, NDArray[np.float64]]) -> Iter
         three = ("rfta2", "gfgf2a", "rfta2ge")
         yield Numbered(
             15, "Communication costs of RFTA2, GFGF2A and RFTA2GE at 2SR",
-            _by_protocol(results, (*three, "rfta2ge-aggregated"), MESSAGES),
+            _by_protocol(results, (*three, "rfta2ge-aggregated", "rfta2ge-outbid"), MESSAGES),
         )  # fmt: skip
         yield Numbered(
             16, "Network lifetime of RFTA2, GFGF2A and RFTA2GE at 2SR",
             _by_protocol(results, three, LIFETIME),
         )  # fmt: skip
         yield Numbered(
-            17, "Robot energies after the lifetime, on the same random network (SR = 0.2, r = 0.25)",
+            17, "Robot energies after the lifetime, on one random network (SR = 0.2, r = 0.25)",
             _energies(energies),
         )  # fmt: skip
 
 
-def half_width(values: NDArray[np.float64]) -> float:
-    """Half the 95 % confidence interval of the mean (Student's t)."""
-    from scipy.stats import t
-
-    sem = float(values.std(ddof=1)) / np.sqrt(len(values))
-    return float(t.ppf(0.975, len(values) - 1)) * sem
-
-
 def interval(values: NDArray[np.float64]) -> tuple[float, float]:
-    """Mean and half width of its 95 % confidence interval (Student's t); nan if unknown."""
-    if len(values) < 2:
-        return (float(values.mean()) if len(values) else np.nan), np.nan
-    return float(values.mean()), half_width(values)
+    """Mean and half width of its 95 % confidence interval; nan where too little is known."""
+    if not len(values):
+        return np.nan, np.nan
+    mean, low, high = mean_interval(values)
+    return mean, 0.5 * (high - low)
 
 
 def _by_radius(results: Results, series: str, quantity: Quantity) -> Figure:

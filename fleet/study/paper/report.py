@@ -40,16 +40,16 @@ def write_report(out: Path, results: Results, command: str) -> Path:
     drawn: list[dict[str, Any]] = []
     for motion in motions:
         label = "" if motion == "straight" else " Physics motion."
-        for numbered in draw_all(results.where(motion=motion), energies_left(motion)):
-            drawn.append(_saved(numbered, figures, motion, label))
+        numbered = draw_all(results.where(motion=motion), energies_left(motion))
+        drawn.extend(_saved(figure, figures, motion, label) for figure in numbered)
     paper = results.where(motion=motions[0])
     listed = [*theory_claims(), *claims(paper)]
     tables = [_table(results, world, motions) for world in TITLES]
-    _write_csv(out / "claims.csv", ["where", "says", "measured", "verdict"],
-               [[c.where, c.says, c.measured, c.verdict] for c in listed])  # fmt: skip
+    said = [[c.where, c.says, c.measured, c.verdict] for c in listed]
+    _write_csv(out / "claims.csv", ["where", "says", "measured", "verdict"], said)
     for number, table in zip((2, 3), tables, strict=True):
-        _write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions],
-                   [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]])  # fmt: skip
+        lines = [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]]
+        _write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
     template = Environment(
         loader=PackageLoader("fleet.study.paper", "."), autoescape=True, trim_blocks=True
     ).get_template("report.html.j2")
@@ -113,21 +113,22 @@ def _table(results: Results, world: str, motions: Sequence[str]) -> dict[str, An
         last = name
         if first.impossible:
             notes.append(f"* {first.impossible}.")
-    notes.append(
-        "RFTA2GE’s messages are counted with aggregated bids, one from each robot; relayed one"
-        " by one they are"
-        + " and ".join(
-            f" {runs.values('messages_per_robot').mean():.1f} ({motion})"
-            for motion in motions
-            if len(
-                runs := results.where(
-                    series="rfta2ge", world=world, motion=motion, search_radius=2.0
-                )
-            )
-        )
-        + " a robot."
-    )
+    notes += [_ge_note(results.where(motion=motion, world=world), motion) for motion in motions]
     return {"title": TITLES[world], "columns": list(motions), "rows": rows, "notes": notes}
+
+
+def _ge_note(runs: Results, motion: str) -> str:
+    """The messages of RFTA2GE by the other ways to count its bids."""
+    relayed, aggregated = (
+        runs.where(series=series, search_radius=2.0).values("messages_per_robot").mean()
+        for series in ("rfta2ge", "rfta2ge-aggregated")
+    )
+    return (
+        "The paper does not say how RFTA2GE counts bids from two hops away. The table has the count"
+        " nearest to it: those two hops away bid only if they outbid whom they heard the call from,"
+        f" and each neighbour passes on the best. If all bid it is {aggregated:.1f} messages a"
+        f" robot, and {relayed:.1f} if every bid is relayed by itself ({motion} motion)."
+    )
 
 
 def _printed(cell: Cell) -> str:

@@ -27,14 +27,15 @@ class Comparison:
 def compare(results: Results, world: str) -> list[Comparison]:
     """Table 2 (``random``) or Table 3 (``random-hole``), pooled over all ranges, row by row.
 
-    The messages of RFTA2GE are compared with aggregated bids, which is nearer to the paper's.
+    The messages of RFTA2GE are those of the way to count bids that is nearest to the paper's:
+    two hops away only those bid that outbid whom they heard the call from.
     """
     compared = []
     for row in ROWS:
         for protocol in PROTOCOLS:
             series = protocol
             if protocol == "rfta2ge" and row.key == "messages_per_robot":
-                series = "rfta2ge-aggregated"
+                series = "rfta2ge-outbid"
             runs = results.where(series=series, world=world, search_radius=TWO_SR)
             paper = TABLES[world][protocol][row.key]
             measured = pooled(runs, row)
