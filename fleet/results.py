@@ -78,6 +78,7 @@ class Tally:
     broken: int = 0  # conversations that came to no end
     conflicts: int = 0  # auctions won by a robot that another had taken meanwhile
     breakdowns: int = 0
+    relocations: int = 0  # trips to places that are no events
     kinds: Counter[str] = field(default_factory=Counter)  # transmissions
 
 

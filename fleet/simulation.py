@@ -23,7 +23,7 @@ from fleet.stream import stream_figures
 from fleet.tasks import State, Task, TaskBook
 from fleet.timing import Rounds, Stream
 from protocols.geometry import squared_distance
-from protocols.messages import Award, Event, ProtocolFunction
+from protocols.messages import Award, Event, Move, ProtocolFunction, RobotId
 from protocols.topology import Topology
 from worlds.arena import Arena
 from worlds.events import Occurrence
@@ -91,10 +91,12 @@ class Simulation:
             self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
         )  # fmt: skip
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
+        self._relocating: dict[int, Task | None] = {}  # by robot: what it carries on the way
         self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
         self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
         self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
         self._over = False
+        self._told_on_air = list(self._crew.on_air)  # what observers know of it
 
     def run(self) -> Summary:
         """Play to the end: of the network's life, of the rounds, or of the time."""
@@ -132,7 +134,7 @@ class Simulation:
             self._agenda.take()()
             return
         until = self._crew.slice_end(self.now, due)
-        if until == inf and not self._trips:
+        if until == inf and not self._trips and not self._relocating:
             self._over = True  # nothing can happen any more
             return
         trips = self._motion.advance(until)
@@ -207,8 +209,8 @@ class Simulation:
             elif self._enough() or not self.book.open_tasks:
                 self._agenda.at(self.now, self._expect)
 
-    def _offer(self, task: Task) -> None:
-        """Tell a robot on the air of the task, and let the protocol talk."""
+    def _offer(self, task: Task, source: RobotId | None = None) -> None:
+        """Tell a robot of the task, the handler's choice or ``source``, and let it talk."""
         if task.state not in (State.REPORTED, State.WAITING):
             return
         if isinstance(self._course.timing, Rounds):
@@ -222,7 +224,11 @@ class Simulation:
         if not on_air:
             self._put_off(task, "nobody is on the air")
             return
-        source = self._handler.collector(task.event.position, on_air)
+        if source is None:
+            source = self._handler.collector(task.event.position, on_air)
+        if self._observers and on_air != self._told_on_air:
+            self._told_on_air = list(on_air)
+            self._tell(lambda o: o.air_changed(self._told_on_air, self.now))
         self._tell(lambda o: o.event_raised(task.event, source, self.now))
         self._talks.start(task, source, self.now)
 
@@ -239,7 +245,10 @@ class Simulation:
         if task.state is not State.REPORTED:
             return  # it expired while it was talked over
         winner = None if award.winner is None else robots[award.winner]
-        if winner is None:
+        set_off = [self._relocate(move, winner, task) for move in award.moves]
+        if winner is None and any(set_off):
+            task.state = State.WAITING  # for the robot that carries it on
+        elif winner is None:
             self._put_off(task, "nobody could take it")
         elif winner.engaged or not winner.able or not winner.alive:
             self.tally.conflicts += 1
@@ -284,9 +293,31 @@ class Simulation:
         self._tell(lambda o: o.departed(task.event, robot.id, self.now))
         self._motion.depart(robot, task.event.position)
 
+    def _relocate(self, move: Move, winner: Robot | None, task: Task) -> bool:
+        """A robot goes to a place that is no event; it carries the task if nobody has won it."""
+        robot = self.fleet.robots[move.robot]
+        if robot.engaged or not robot.able or not robot.alive:
+            return False
+        self.tally.relocations += 1
+        robot.engaged = True
+        self._since[robot.id] = self.now
+        self._relocating[robot.id] = task if winner is None else None
+        self._motion.depart(robot, move.position)
+        return True
+
+    def _relocated(self, robot: Robot, trip: Trip) -> None:
+        """A relocation has ended: what the robot carried is told to it anew."""
+        task = self._relocating.pop(robot.id)
+        self._release(robot)
+        if task is None or task.state is not State.WAITING:
+            return
+        if trip.outcome == "arrived" and robot.on_air:
+            self._offer(task, robot.id)
+        else:
+            self._raise_again(robot, task)
+
     def _settle(self, robot: Robot, trip: Trip) -> None:
         """A trip has ended: count it; the event is served, or raised again."""
-        task = self._trips.pop(robot.id)
         tally, spec = self.tally, self.fleet.spec
         tally.predicted += spec.power.per_metre(spec.cruise) * dist(trip.origin, trip.site)
         tally.distance += dist(trip.origin, trip.end)
@@ -295,6 +326,10 @@ class Simulation:
             robot.failed_sites.add(trip.site)
         if robot.battery.charge == 0.0:
             self._crew.bury(robot)
+        if robot.id in self._relocating:
+            self._relocated(robot, trip)
+            return
+        task = self._trips.pop(robot.id)
         self._tell(lambda o: o.trip_ended(task.event, trip))
         if trip.outcome != "arrived":
             tally.failed += 1
@@ -356,7 +391,7 @@ class Simulation:
             return
         self.tally.breakdowns += 1
         robot.able = False
-        if robot.id in self._trips:
+        if robot.id in self._trips or robot.id in self._relocating:
             self._motion.halt(robot)
         if fault.what == "all":
             self._crew.bury(robot)

@@ -49,6 +49,7 @@ class StreamFigures:
     broken: int
     restarts: int
     breakdowns: int
+    relocations: int
     repeated: int
     unheard: int
     beacons: int
@@ -105,6 +106,7 @@ def stream_figures(
         broken=tally.broken,
         restarts=tally.restarts,
         breakdowns=tally.breakdowns,
+        relocations=tally.relocations,
         repeated=tally.repeated,
         unheard=tally.unheard,
         beacons=beacons,

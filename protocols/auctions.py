@@ -83,9 +83,10 @@ def auction(
 
     def to_beat(caller: RobotId) -> Bid | None:
         """The bid that a call from ``caller`` carries."""
-        if caller != auctioneer:
-            return offer(view[caller], event, metric) if rules.outbid else None
-        return Bid(metric(view[caller], event.position), caller) if rules.reserve else None
+        if rules.reserve and caller == auctioneer:
+            return Bid(metric(view[caller], event.position), caller)
+        competes = caller != auctioneer or rules.auctioneer_bids
+        return offer(view[caller], event, metric) if rules.outbid and competes else None
 
     own = offer(view[auctioneer], event, metric)
     tree = yield from call(view, auctioneer, rules, to_beat)
@@ -138,6 +139,8 @@ def call(
     tree: Tree = {}
     layer = [auctioneer]
     for _ in range(rules.hops):
+        if not layer:
+            break
         called: list[RobotId] = []
         for caller in layer:
             receivers: list[RobotId | None] = [None]

@@ -10,6 +10,7 @@ from protocols.adaptive import aap
 from protocols.connectivity import mia_ta
 from protocols.messages import Conversation
 from protocols.metrics import Metric
+from protocols.rfta3 import rfta3
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021"
 MEZEI = "Mezei et al., IEEE Robotics & Automation Magazine 17(4), 2010"
@@ -50,9 +51,11 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
         rfta.rfta2_iterated, "Mezei et al., Ad Hoc & Sensor Wireless Networks 17(1-2), 2013"
     ),
     "rfta2ge": ProtocolEntry(rfta.rfta2ge, f"{PAPER}, section 4.4"),
+    "rfta3": ProtocolEntry(rfta3, "beyond the paper: docs/rfta3.md"),
 }
 
 METRICS: dict[str, MetricEntry] = {
+    "company-share": MetricEntry(metrics.CompanyShare, "cost-share, with company"),
     "cost-over-left": MetricEntry(
         metrics.cost_over_left, f"{PAPER}, section 6, read as a quotient"
     ),

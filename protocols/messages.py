@@ -36,12 +36,24 @@ class Transmission(NamedTuple):
     bid: Bid | None = None  # what a "bid" offers, an "assign" names, a "call" wants bettered
 
 
+class Move(NamedTuple):
+    """A robot goes to a place that is no event: to keep the network together, or to find it."""
+
+    robot: RobotId
+    position: Point  # [m]
+
+
 class Award(NamedTuple):
-    """What a conversation ends with: who goes, and among whom it was chosen."""
+    """What a conversation ends with: who goes, and among whom it was chosen.
+
+    With ``moves`` but no winner the event is carried on: it is told again to the robot that
+    moved first, when all have arrived.
+    """
 
     winner: RobotId | None  # None: nobody can take the task
     auctioneer: RobotId  # the robot that the search ended at
     bids: tuple[Bid, ...] = ()  # those the auctioneer chose among, its own included
+    moves: tuple[Move, ...] = ()  # of robots that have been told
 
 
 Conversation: TypeAlias = Generator[Transmission, Heard, Award]

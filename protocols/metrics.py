@@ -59,6 +59,30 @@ def most_cost_times_left(robot: Robot, site: Point) -> float:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CompanyShare:
+    """Smallest share of the battery spent, those with company close by first: m·d/E_R·(1 + a/l).
+
+    a is the distance to the nearest neighbour, l a length: a robot that stands beside another
+    leaves no gap, one that stands alone does.
+
+    Raises:
+        ValueError: the length is not positive.
+    """
+
+    length: float = 0.3  # l [m]
+
+    def __post_init__(self) -> None:
+        if not self.length > 0.0:
+            raise ValueError(f"length is {self.length}; expected more than 0")
+
+    def __call__(self, robot: Robot, site: Point) -> float:
+        """The bid's cost, without unit."""
+        here = robot.position
+        alone = min((dist(here, there) for there in robot.neighbours.values()), default=0.0)
+        return cost_share(robot, site) * (1.0 + alone / self.length)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class EnergyLeftMinusCost:
     """Most energy held, less the trip's cost times a weight: w·m·d − E_R [J].
 

@@ -1,0 +1,100 @@
+"""RFTA3, word by word, and what it promises."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import dist
+
+import numpy as np
+import pytest
+from hand_drawn import converse, network, random_connected, random_points
+
+from protocols.messages import Move
+from protocols.metrics import CompanyShare, cost_share
+from protocols.rfta3 import rfta3
+from protocols.routing import Search
+
+# A ladder, so that no single robot's departure cuts anybody off, and an event past its end.
+#
+#   1 3 5 7
+#   0 2 4 6   *
+LADDER = [(float(x), 0.9 * y) for x in range(4) for y in range(2)]
+SITE = (4.2, 0.2)
+THRIFT = partial(rfta3, metric=cost_share, search=Search(radius=1.5))
+
+
+def ladder(*energy):
+    return network(LADDER, 1.4, energy=list(energy))
+
+
+def test_the_auctioneer_goes_itself_if_nobody_offers_more():
+    talk = converse(THRIFT, ladder(*[100] * 8), SITE, 0)
+    assert talk.award.winner == talk.award.auctioneer == 6
+    assert [t.kind for t, _ in talk.transcript][-1] == "call"
+    assert talk.said("bid") == []
+
+
+def test_only_better_bids_are_sent():
+    talk = converse(THRIFT, ladder(100, 100, 100, 100, 100, 100, 60, 100), SITE, 0)
+    (call,) = [t for t, _ in talk.transcript if t.kind == "call"]
+    assert call.bid.robot == 6
+    assert [sender for sender, _ in talk.said("bid")] == [7]
+    assert talk.award.winner == 7
+
+
+def test_the_ring_widens_while_nobody_can_go():
+    talk = converse(THRIFT, ladder(100, 1, 1, 1, 1, 1, 1, 1), SITE, 0)
+    calls = [t.sender for t, _ in talk.transcript if t.kind == "call"]
+    assert calls[0] == calls[1] == 6  # one hop deep, then two, then four
+    assert talk.award.winner == 0
+    assert talk.said("assign")[-1][1] == 0
+
+
+def test_a_bridge_stays_while_others_can_go():
+    """Robot 1 joins 0 to 2; it is the nearest and the fullest."""
+    line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
+    site = (1.0, 0.3)
+    talk = converse(rfta3, network(line, 1.1, energy=[60, 100, 70]), site, 1)
+    assert talk.award.winner == 2
+    alone = converse(rfta3, network(line, 1.1, energy=[1, 100, 1]), site, 1)
+    assert alone.award.winner == 1  # nobody else can: then it goes
+
+
+def test_a_splinter_carries_the_event_towards_it():
+    pair = network([(0.0, 0.0), (0.5, 0.0)], 1.0, energy=[50, 90])
+    talk = converse(rfta3, pair, (9.0, 0.0), 0)
+    assert talk.award.winner is None
+    assert talk.award.moves == (Move(1, (1.5, 0.0)),)
+
+
+def test_a_splinter_that_can_go_goes():
+    pair = network([(0.0, 0.0), (0.5, 0.0)], 1.0, energy=[50, 90])
+    assert converse(rfta3, pair, (2.0, 0.0), 0).award.winner is not None
+
+
+@pytest.mark.parametrize("graph", ["gabriel", "rng", "udg"])
+def test_an_event_is_served_whenever_any_robot_of_the_component_can(graph):
+    rng = np.random.default_rng(3)
+    served = refused = 0
+    for _ in range(150):
+        energy = np.where(rng.random(30) < 0.12, rng.uniform(20.0, 100.0, 30), 0.5)
+        points = random_connected(30, 8.0, 2.6, rng)
+        view = network(points, 2.6, graph, energy)
+        site = random_points(1, 8.0, rng)[0]
+        able = [robot for robot in view if robot.energy >= robot.cost_to(site)]
+        winner = converse(rfta3, view, site, int(rng.integers(30))).award.winner
+        assert (winner is not None) == bool(able)
+        served += winner is not None
+        refused += winner is None
+    assert min(served, refused) > 10
+
+
+def test_company_makes_dispensable():
+    metric = CompanyShare(length=0.3)
+    crowd = network([(0.0, 0.0), (0.1, 0.0), (2.0, 0.0)], 2.5)
+    beside, apart = crowd[1], crowd[2]
+    site = (1.05, 0.0)
+    assert dist(beside.position, site) == pytest.approx(dist(apart.position, site))
+    assert metric(beside, site) < metric(apart, site)
+    with pytest.raises(ValueError, match="length is 0"):
+        CompanyShare(length=0.0)
