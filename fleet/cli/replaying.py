@@ -1,0 +1,58 @@
+"""``fleet replay``: one run of a study again, recorded."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+from fleet.cli.failing import bad_input_exits
+
+DIFFERENT = 1
+
+
+@click.command("replay")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("key")
+@click.option("--rrd", type=click.Path(path_type=Path), help="Record the run to this file.")
+@click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool) -> None:
+    """Run one run of a sweep again, and compare it with what the sweep found.
+
+    FOLDER is that of the sweep. KEY is a key of runs.parquet, or its first digits. Exit code 1
+    if the run is not the same to the last bit.
+    """
+    from fleet.cli.progress import RunProgress
+    from fleet.cli.resuming import say
+    from fleet.cli.summary import print_summary
+    from fleet.observer import Observer
+    from fleet.study.replaying import kept_run
+    from fleet.study.version import program_version
+
+    with bad_input_exits():
+        kept = kept_run(folder, key)
+        observers: list[Observer] = (
+            [RunProgress(kept.scenario.rounds)] if sys.stderr.isatty() else []
+        )
+        if rrd is not None or view:
+            from fleet.replay import recorder
+
+            observers.append(recorder(kept.scenario, rrd and rrd.resolve(), live=view))
+        summary = kept.play(observers)
+    if as_json:
+        click.echo(json.dumps(summary.as_dict()))
+    else:
+        print_summary(summary)
+    differences = kept.differences(summary)
+    for difference in differences:
+        say(difference)
+    if kept.version != program_version():
+        say(f"the run is of version {kept.version}; this is {program_version()}")
+    if differences:
+        say(f"run {kept.key[:12]} is not the run that is kept")
+        sys.exit(DIFFERENT)
+    verdict = "the same to the last bit" if kept.row else "done; there was none to compare it with"
+    say(f"run {kept.key[:12]} is {verdict}")

@@ -1,0 +1,22 @@
+"""``fleet report``: a study as a page to read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fleet.cli.failing import bad_input_exits
+
+
+@click.command("report")
+@click.argument("folder", type=click.Path(path_type=Path))
+def command(folder: Path) -> None:
+    """Write FOLDER/report.html from what a sweep has so far, also while it goes on.
+
+    The figures are beside it as SVG, and what they show as CSV, in FOLDER/report.
+    """
+    from fleet.study.report.writing import write_report
+
+    with bad_input_exits():
+        click.echo(write_report(folder))

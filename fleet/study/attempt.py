@@ -1,0 +1,61 @@
+"""Running one task where it is: find the work function, call it, and write down what came."""
+
+from __future__ import annotations
+
+import json
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from fleet.study.task import Outcome, Task
+
+
+def attempt(task: Task) -> Outcome:
+    """The outcome of a task. What the work function raises is part of the outcome."""
+    started = time.perf_counter()
+    try:
+        row = dict(work_function(task.function)(task))
+        tables = {name: pack(rows) for name, rows in row.pop("tables", {}).items() if rows}
+        text = json.dumps(row, default=_as_plain)
+    except Exception:  # noqa: BLE001  # whatever a task raises is recorded, and the study goes on
+        seconds = time.perf_counter() - started
+        return Outcome(task.key, "raised", "", {}, traceback.format_exc(limit=-12), 1, seconds)
+    return Outcome(task.key, "done", text, tables, "", 1, time.perf_counter() - started)
+
+
+@cache
+def work_function(path: str) -> Callable[[Task], Mapping[str, Any]]:
+    """The function that ``module:name`` means.
+
+    Raises:
+        ModuleNotFoundError, AttributeError: there is none.
+        ValueError: the path is not of that form.
+    """
+    module, colon, name = path.partition(":")
+    if not (module and colon and name):
+        raise ValueError(f"work function is {path!r}; expected module:name")
+    found: Callable[[Task], Mapping[str, Any]] = getattr(import_module(module), name)
+    return found
+
+
+def pack(rows: list[dict[str, Any]]) -> bytes:
+    """A table as a compressed Arrow stream."""
+    import pyarrow as pa
+
+    table = pa.Table.from_pylist(rows)
+    sink = pa.BufferOutputStream()
+    options = pa.ipc.IpcWriteOptions(compression="zstd")
+    with pa.ipc.new_stream(sink, table.schema, options=options) as stream:
+        stream.write_table(table)
+    packed: bytes = sink.getvalue().to_pybytes()
+    return packed
+
+
+def _as_plain(value: Any) -> Any:
+    """NumPy's numbers and arrays as Python's."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a row holds {value!r} of type {type(value).__name__}; expected plain values")

@@ -1,0 +1,96 @@
+"""The study on one machine: a pool of worker processes, one task in each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias
+
+from fleet.study.errors import BrokenOff
+from fleet.study.task import Outcome, Task
+from fleet.study.worker import Worker
+
+HEARTBEAT = 0.1  # [s] between looks at whether to stop
+
+Take: TypeAlias = Callable[[], Task | None]
+
+
+class Engine(Protocol):
+    """Runs tasks somewhere else, each apart from all others."""
+
+    def run(self, take: Take) -> Iterator[list[Outcome]]:
+        """Outcomes as they come, several at a time; an empty list now and then while none do.
+
+        ``take`` gives the next task, as there is room for one; None: there is none at the
+        moment. The end is when there is none and nothing is under way. A task whose worker
+        died is an outcome like others: "killed".
+
+        Raises:
+            BrokenOff: what runs the tasks is gone.
+        """
+
+    def close(self) -> None:
+        """Let go of everything, at once."""
+
+
+class LocalEngine:
+    """As many worker processes as asked for, started as tasks come."""
+
+    def __init__(self, workers: int | None = None) -> None:
+        self.workers = workers or usable_cores()
+        self._folder = str(Path.cwd())
+        self._busy: dict[Any, Worker] = {}  # by connection
+        self._idle: list[Worker] = []
+
+    def run(self, take: Take) -> Iterator[list[Outcome]]:
+        """See :class:`Engine`."""
+        self._feed(take)
+        while self._busy:
+            ready = wait(list(self._busy), HEARTBEAT)
+            outcomes = [self._outcome(self._busy.pop(connection)) for connection in ready]
+            self._feed(take)  # nobody shall be idle while the outcomes are written down
+            yield outcomes
+            self._feed(take)  # what comes again because of them
+
+    def close(self) -> None:
+        """Kill the workers."""
+        for worker in (*self._busy.values(), *self._idle):
+            worker.close()
+        self._busy.clear()
+        self._idle.clear()
+
+    def _feed(self, take: Take) -> None:
+        while len(self._busy) < self.workers and (task := take()):
+            worker = self._idle.pop() if self._idle else self._start()
+            worker.give(task)
+            self._busy[worker.connection] = worker
+
+    def _start(self) -> Worker:
+        try:
+            return Worker(self._folder)
+        except (EOFError, OSError) as error:  # the limit of processes, or their server was killed
+            raise BrokenOff(f"no worker process can be started: {error!r}") from error
+
+    def _outcome(self, worker: Worker) -> Outcome:
+        task, outcome = worker.task, worker.answer()
+        if outcome is not None:
+            self._idle.append(worker)
+            return outcome
+        assert task is not None
+        cause = worker.death()
+        worker.close()
+        return killed(task, cause)
+
+
+def killed(task: Task, cause: str) -> Outcome:
+    """The outcome of a task that its worker did not survive."""
+    return Outcome(task.key, "killed", "", {}, cause, 1, 0.0)
+
+
+def usable_cores() -> int:
+    """The cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,1 @@
+"""The report of a study: figures and tables chosen from what it varies."""

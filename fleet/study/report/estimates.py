@@ -1,0 +1,138 @@
+"""Means, paired differences and lifetimes of a study's cells: the figures' and tables' numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.study.report.layout import Layout
+from fleet.study.report.runs import Runs, ended
+from fleet.study.statistics import (
+    Difference,
+    Interval,
+    Survival,
+    mean_interval,
+    paired_difference,
+    survival,
+)
+
+ROBOTS_AT = np.linspace(0.0, 100.0, 101)  # [%] of the robots, for the distribution of energy
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Where in a study an estimate belongs: values of the facets, the series and x."""
+
+    facet: tuple[Any, ...]
+    series: Any
+    x: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """The mean of a measure over a cell's runs."""
+
+    cell: Cell
+    measure: str
+    runs: int
+    estimate: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Contrast:
+    """How a measure differs from the baseline's, over runs of the same seed."""
+
+    cell: Cell
+    measure: str
+    difference: Difference
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """How long the networks of a cell live."""
+
+    cell: Cell
+    runs: int
+    cut: int  # runs that were still going at their limit of rounds
+    curve: Survival
+
+
+@dataclass(frozen=True, slots=True)
+class Energies:
+    """The energy that the robots of a cell have left [J], least first, at ROBOTS_AT (101,)."""
+
+    cell: Cell
+    robots: int
+    left: NDArray[np.float64]
+
+
+def means(runs: Runs, layout: Layout, measures: Sequence[str]) -> list[Mean]:
+    """The mean and its interval, for every cell and measure."""
+    return [
+        Mean(cell, measure, len(group), mean_interval(_finite(group[measure])))
+        for cell, group in _cells(runs, layout)
+        for measure in measures
+    ]
+
+
+def contrasts(runs: Runs, layout: Layout, measures: Sequence[str]) -> list[Contrast]:
+    """The paired difference from the baseline, for every other series, cell and measure."""
+    if layout.series is None:
+        return []
+    groups = dict(_cells(runs, layout))
+    found = []
+    for cell, group in groups.items():
+        base = groups.get(Cell(cell.facet, layout.baseline, cell.x))
+        if base is None or cell.series == layout.baseline:
+            continue
+        _, mine, theirs = np.intersect1d(group["seed"], base["seed"], return_indices=True)
+        for measure in measures:
+            values, baseline = group[measure][mine], base[measure][theirs]
+            there = np.isfinite(values) & np.isfinite(baseline)
+            difference = paired_difference(values[there], baseline[there])
+            found.append(Contrast(cell, measure, difference))
+    return found
+
+
+def curves(runs: Runs, layout: Layout) -> list[Curve]:
+    """The survival of networks, for every cell; none where no run came to its network's end."""
+    if "lifetime" not in runs.columns or "scenario" not in runs.columns or not len(runs):
+        return []
+    over = ended(runs)
+    if not over.any():
+        return []
+    marked = Runs({**runs.columns, "ended": over}, runs.axes)
+    return [
+        Curve(
+            cell,
+            len(group),
+            int(np.count_nonzero(~group["ended"])),
+            survival(group["lifetime"], group["ended"]),
+        )
+        for cell, group in _cells(marked, layout)
+    ]
+
+
+def energies(robots: Runs, layout: Layout) -> list[Energies]:
+    """How evenly the energy that is left is spread, for every cell."""
+    return [
+        Energies(cell, len(group), np.percentile(group["energy_left"], ROBOTS_AT))
+        for cell, group in _cells(robots, layout)
+    ]
+
+
+def _cells(runs: Runs, layout: Layout) -> Iterator[tuple[Cell, Runs]]:
+    names = [*layout.facets, *(name for name in (layout.series, layout.x) if name is not None)]
+    for values, group in runs.groups(names):
+        rest = list(values[len(layout.facets) :])
+        series = rest.pop(0) if layout.series is not None else None
+        x = rest.pop(0) if layout.x is not None else None
+        yield Cell(values[: len(layout.facets)], series, x), group
+
+
+def _finite(column: NDArray[Any]) -> NDArray[np.float64]:
+    return np.array(column[np.isfinite(column)], float)

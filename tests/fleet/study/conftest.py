@@ -1,0 +1,50 @@
+"""What the tests of studies share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fleet.study import Task
+
+
+@pytest.fixture(autouse=True)
+def deeds_are_found(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Where the work functions note that they were called."""
+    return tmp_path / "calls.log"
+
+
+@pytest.fixture
+def make_tasks(log):
+    """Make ``count`` tasks of a work function in deeds.py."""
+
+    def make(count, function="note", **scenario):
+        return [
+            Task.of(
+                {"n": n, "log": str(log), **scenario},
+                cell=f"n={n}",
+                labels={"label": n % 3},
+                function=f"deeds:{function}",
+            )
+            for n in range(count)
+        ]
+
+    return make
+
+
+@pytest.fixture
+def calls(log):
+    """What the work functions noted: the n of each call."""
+
+    def read():
+        if not log.exists():
+            return []
+        return [int(line.split()[0]) for line in log.read_text().splitlines()]
+
+    return read
