@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -38,6 +39,9 @@ class Observer:
 
     def run_started(self, fleet: Fleet) -> None:
         """Everybody is in place, nothing has happened yet."""
+
+    def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
+        """Robots fell silent or are heard again: these can be talked to when an event is raised."""
 
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """``source`` is told of the event; again, by another robot, if a trip failed."""

@@ -19,8 +19,7 @@ Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
 class Trip:
     """One robot's drive to one site, from departure to the end, whatever the end.
 
-    The last five split up ``energy``; they add up to it. Motion that only knows Eq. (1) leaves
-    them, and all that it has no notion of, at 0.
+    The last five split up ``energy``; they add up to it. What a motion has no notion of is 0.
     """
 
     robot: RobotId
@@ -33,7 +32,7 @@ class Trip:
     path: float  # driven length [m]
     energy: float  # drained on the way [J]
     planned: float = 0.0  # length of the path that was planned when it was sent [m]
-    offset: float = 0.0  # from the site to the end of that path: it is covered by something [m]
+    offset: float = 0.0  # from the site to where it was bound: the site is covered [m]
     waited: float = 0.0  # before it could set off, and for others on the way [s]
     steps: int = 0  # of simulation in which it was driven
     contacts: int = 0  # times that it was pushed by another body, or pushed one

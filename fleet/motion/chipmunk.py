@@ -45,40 +45,27 @@ class NoBridge(RuntimeError):
     """pymunk is not built the way the bridge knows."""
 
 
-def _caller(*arguments: tuple[Any, Any]) -> Any:
-    """An intrinsic that calls the C function at an address with ``arguments``: their numba and
-    LLVM types. It returns nothing."""
-    signature = types.void(types.int64, *(numba_type for numba_type, _ in arguments))
-    function_type = ir.FunctionType(ir.VoidType(), [llvm_type for _, llvm_type in arguments])
+def _caller(numba_type: Any, llvm_type: Any) -> Any:
+    """An intrinsic f(address, pointer, last) that calls the C function at ``address`` with a
+    pointer and ``last``, which is of these types, and returns nothing.
+    """
+    function_type = ir.FunctionType(ir.VoidType(), [ir.IntType(64), llvm_type])
 
     def generate(context: Any, builder: Any, _signature: Any, values: Sequence[Any]) -> Any:
-        builder.call(builder.inttoptr(values[0], function_type.as_pointer()), values[1:])
+        function = builder.inttoptr(values[0], function_type.as_pointer())
+        builder.call(function, values[1:])
         return context.get_dummy_value()
 
-    return signature, generate
+    @intrinsic  # type: ignore[untyped-decorator]  # numba is not typed
+    def call(_typing: Any, _address: Any, _pointer: Any, _last: Any) -> Any:
+        return types.void(types.int64, types.int64, numba_type), generate
+
+    return call
 
 
-_POINTER = (types.int64, ir.IntType(64))
-_DOUBLE = (types.float64, ir.DoubleType())
-_INT = (types.int32, ir.IntType(32))
-
-
-@intrinsic
-def _call_step(typing: Any, function: Any, space: Any, dt: Any) -> Any:
-    """``void f(cpSpace *, double)``."""
-    return _caller(_POINTER, _DOUBLE)
-
-
-@intrinsic
-def _call_on_body(typing: Any, function: Any, body: Any, data: Any) -> Any:
-    """``void f(cpBody *, void *)``."""
-    return _caller(_POINTER, _POINTER)
-
-
-@intrinsic
-def _call_set_type(typing: Any, function: Any, body: Any, kind: Any) -> Any:
-    """``void f(cpBody *, int)``."""
-    return _caller(_POINTER, _INT)
+_call_step = _caller(types.float64, ir.DoubleType())  # f(cpSpace *, double)
+_call_on_body = _caller(types.int64, ir.IntType(64))  # f(cpBody *, void *)
+_call_set_type = _caller(types.int32, ir.IntType(32))  # f(cpBody *, enum)
 
 
 @kernel

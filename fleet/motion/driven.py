@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import dist, floor, inf, tau
+from math import dist, floor, inf
 from typing import Any
 
 import numpy as np
@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from fleet.energy import Battery
 from fleet.motion import Outcome, Trip
 from fleet.motion.engine import Engine
-from fleet.motion.kernels.records import ARRIVED, EMPTY, LOST, TOUCHED, WAITING
-from fleet.motion.law import law_of
+from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
+from fleet.motion.law import fine_substeps, law_of
 from fleet.motion.movers import Movers
 from fleet.motion.options import DriveOptions
-from fleet.motion.planning import Plan, Planner
+from fleet.motion.planning import Planner
+from fleet.motion.rest import Rest
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
@@ -36,14 +37,13 @@ class _Voyage:
     """A trip in progress."""
 
     robot: Robot
-    battery: Battery
     slot: int
     origin: Point  # [m]
     site: Point  # [m]
-    plan: Plan  # the first one
+    planned: float  # length of the first plan [m]
+    goal: Point  # of the last plan [m]
     departed: int  # [steps]
     replans: int = 0
-    stopping: bool = False  # it brakes, to plan anew
 
 
 class DrivenMotion:
@@ -72,9 +72,14 @@ class DrivenMotion:
         self._arena = arena
         self._with_engine = engine
         self._law = law_of(spec, self.options, sample_interval)
+        self._fine = fine_substeps(spec, self.options)
+        self._stopping: set[int] = set()  # slots of those that brake, to plan anew
+        self._tread()
         self._eq1 = spec.power.per_metre(spec.cruise)  # [J/m]
         self._step = 0
-        self._voyages: list[_Voyage] = []  # in order of departure
+        self._voyages: list[_Voyage] = []  # in order of departure, as the next two
+        self._robots: list[Robot] = []
+        self._batteries: list[Battery] = []
         self._under_way: set[RobotId] = set()
         self._over: list[Trip] = []
 
@@ -86,7 +91,7 @@ class DrivenMotion:
     @property
     def moving(self) -> Sequence[Robot]:
         """The robots under way, by departure; those that wait to set off too."""
-        return [voyage.robot for voyage in self._voyages]
+        return tuple(self._robots)
 
     def place(self, robots: Sequence[Robot]) -> None:
         """Put the fleet on the floor, where the robots say they are. Once, before all else.
@@ -104,7 +109,7 @@ class DrivenMotion:
         )
         self._movers = Movers(self._law, self._planner.floor, self._engine)
         self._facing = [robot.heading for robot in robots]  # [rad], not wrapped
-        self._robots = robots
+        self._rested = Rest(robots, self.spec.extra.idle * self.options.dt)
 
     def cost(self, robot: Robot, site: Point) -> float:
         """The energy that ``robot`` believes going to ``site`` [m] takes [J], by the options.
@@ -136,12 +141,9 @@ class DrivenMotion:
             raise ValueError(f"robot {robot.id} is under way; expected one that rests")
         plan = self._planner.plan(robot.id, robot.position, site)
         if plan.pieces is None:
-            self._over.append(
-                Trip(
-                    robot.id, "no path", robot.position, site, robot.position,
-                    self.now, self.now, 0.0, 0.0, offset=dist(robot.position, site),
-                )  # fmt: skip
-            )
+            here, now = robot.position, self.now
+            trip = Trip(robot.id, "no path", here, site, here, now, now, path=0.0, energy=0.0)
+            self._over.append(trip)
             return
         slot = self._movers.depart(
             robot.id, robot.position, self._facing[robot.id], robot.battery.charge,
@@ -149,8 +151,10 @@ class DrivenMotion:
         )  # fmt: skip
         self._planner.changed()
         self._under_way.add(robot.id)
+        self._robots.append(robot)
+        self._batteries.append(robot.battery)
         self._voyages.append(
-            _Voyage(robot, robot.battery, slot, robot.position, site, plan, self._step)
+            _Voyage(robot, slot, robot.position, site, plan.length, plan.goal, self._step)
         )
         if not len(plan.pieces):
             self._finish({len(self._voyages) - 1: "arrived"})
@@ -166,6 +170,7 @@ class DrivenMotion:
                 self._look_after(over)
         if not self._voyages and not self._over and until < inf:
             self._step = max(self._step, last)
+        self._rested.pay(self._step, self._under_way)
         trips, self._over = self._over, []
         return trips
 
@@ -177,14 +182,17 @@ class DrivenMotion:
         """
         for place, voyage in enumerate(self._voyages):
             if voyage.robot is robot:
-                self._movers.stand(voyage.slot, self._step)
-                self._finish({place: "broken down"})
+                ended: dict[int, Outcome] = {place: "broken down"}
+                self._stand(voyage)
+                if self.options.traffic == "reserved":
+                    ended |= self._plan_anew(self._make_way(voyage))
+                self._finish(ended)
+                self._tread()
                 return
 
     def samples(self) -> NDArray[np.float64]:
         """Poses under way since the last call, by time and robot."""
         rows = self._movers.samples()
-        rows[:, 4] -= tau * np.floor((rows[:, 4] + 0.5 * tau) / tau)
         return rows[np.lexsort((rows[:, 0], rows[:, 1]))]
 
     def _last_step(self, until: float) -> int:
@@ -193,27 +201,112 @@ class DrivenMotion:
 
     def _report(self) -> None:
         """Tell the robots where they are and what their batteries hold."""
-        columns = self._movers.poses().T.tolist()
-        points = zip(columns[0], columns[1], strict=True)
-        for voyage, point, heading, charge in zip(
-            self._voyages, points, columns[2], columns[3], strict=True
-        ):
-            robot = voyage.robot
+        x, y, heading, charge = self._movers.poses().T.tolist()
+        for robot, point, angle in zip(self._robots, zip(x, y, strict=True), heading, strict=True):
             robot.position = point
-            robot.heading = heading
-            voyage.battery.charge = charge
+            robot.heading = angle
+        for battery, left in zip(self._batteries, charge, strict=True):
+            battery.charge = left
 
     def _look_after(self, places: Sequence[int]) -> None:
         """See to the trips that are over, and to those that cannot go on as planned."""
         ended: dict[int, Outcome] = {}
+        anew: list[_Voyage] = []
         for place in places:
             voyage = self._voyages[place]
             phase = self._movers.phase(voyage.slot)
             if phase == EMPTY:
                 ended[place] = "battery empty"
-            elif phase == ARRIVED and not voyage.stopping:
+                anew += self._check_rest(voyage)
+            elif phase == ARRIVED and voyage.slot not in self._stopping:
                 ended[place] = "arrived"
-        self._finish(ended)
+            elif phase == TOUCHED:
+                self._stop(voyage)
+                anew += self._make_way(voyage)
+            else:
+                anew.append(voyage)
+        self._finish(ended | self._plan_anew(anew))
+        self._tread()
+
+    def _plan_anew(self, voyages: Sequence[_Voyage]) -> dict[int, Outcome]:
+        """Let robots go on to their sites by other paths; those that cannot, by place."""
+        ended: dict[int, Outcome] = {}
+        for voyage in voyages:
+            outcome = self._try_anew(voyage)
+            if outcome is not None:
+                ended[self._voyages.index(voyage)] = outcome
+        return ended
+
+    def _try_anew(self, voyage: _Voyage) -> Outcome | None:
+        robot, slot = voyage.robot, voyage.slot
+        self._stopping.discard(slot)
+        voyage.replans += 1
+        if voyage.replans > self.options.replans:
+            return "stuck"
+        if self.options.traffic == "reserved":
+            self._stand(voyage)
+            plan = self._planner.plan(robot.id, robot.position, voyage.site)
+        else:
+            stopped = self._movers.stopped(slot)
+            plan = self._planner.plan_among(stopped, robot.id, robot.position, voyage.site)
+        if plan.pieces is None:
+            return "stuck"
+        voyage.goal = plan.goal
+        if not len(plan.pieces):
+            return "arrived"
+        self._movers.resume(slot, plan.pieces, self._step)
+        self._planner.changed()
+        return None
+
+    def _stand(self, voyage: _Voyage) -> None:
+        """The robot stands where it is, and rests there for all that others know."""
+        self._movers.stand(voyage.slot, self._step)
+        self._planner.changed()
+        if self._engine is not None:
+            self._engine.park(voyage.robot.id)
+
+    def _tread(self) -> None:
+        """Take finer steps where bodies may touch: where nobody keeps them apart, or where some
+        had to stop against their reservations.
+        """
+        careful = self._stopping or self.options.traffic == "free"
+        self._law[0]["substeps"] = self._fine if careful else 1
+
+    def _stop(self, voyage: _Voyage) -> None:
+        """Let a robot brake on its path, to plan anew from there."""
+        self._stopping.add(voyage.slot)
+        self._movers.stop_short(voyage.slot, self._step)
+        self._planner.changed()
+
+    def _check_rest(self, voyage: _Voyage) -> list[_Voyage]:
+        """If a robot has died elsewhere than foreseen, others must make way."""
+        foreseen = self._planner.resting_place(voyage.robot.id)
+        if self.options.traffic == "free" or dist(foreseen, voyage.robot.position) < SAME_PLACE:
+            return []
+        self._stand(voyage)
+        return self._make_way(voyage)
+
+    def _make_way(self, obstacle: _Voyage) -> list[_Voyage]:
+        """Stop all whose reserved ways lead where a robot stands or stops against its own
+        reservation, and all whose ways these block in turn. Those that had not set off yet must
+        plan anew: they are returned.
+        """
+        by_slot = {voyage.slot: voyage for voyage in self._voyages}
+        queue, seen = [obstacle.slot], {obstacle.slot}
+        waiting = []
+        while queue:
+            for slot in self._movers.blocked_by(queue.pop(0), self._step):
+                phase = self._movers.phase(slot)
+                if slot in seen or phase >= ARRIVED:
+                    continue
+                if phase == WAITING:
+                    self._stand(by_slot[slot])
+                    waiting.append(by_slot[slot])
+                else:
+                    self._stop(by_slot[slot])
+                seen.add(slot)
+                queue.append(slot)
+        return waiting
 
     def _finish(self, outcomes: Mapping[int, Outcome]) -> None:
         """Trips, by place in the order of departure, are over: park the robots where they are."""
@@ -224,11 +317,14 @@ class DrivenMotion:
             self._over.append(self._trip(voyage, outcome, state))
             self._facing[robot.id] = state["heading"]
             self._planner.rest(robot.id, robot.position)
+            self._rested.since(robot, self._step)
             if self._engine is not None:
                 self._engine.park(robot.id)
             self._under_way.discard(robot.id)
+            self._stopping.discard(voyage.slot)
         self._movers.leave(list(outcomes))
-        self._voyages = [v for k, v in enumerate(self._voyages) if k not in outcomes]
+        for place in sorted(outcomes, reverse=True):
+            del self._voyages[place], self._robots[place], self._batteries[place]
 
     def _trip(self, voyage: _Voyage, outcome: Outcome, state: dict[str, Any]) -> Trip:
         dt = self.options.dt
@@ -245,8 +341,8 @@ class DrivenMotion:
             self.now,
             state["path"],
             state["spent"],
-            voyage.plan.length,
-            dist(voyage.plan.goal, voyage.site),
+            voyage.planned,
+            dist(voyage.goal, voyage.site),
             state["waited"] * dt,
             state["steps"],
             state["contacts"],

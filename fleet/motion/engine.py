@@ -8,16 +8,14 @@ rubs and nothing bounces.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
 from fleet.motion.chipmunk import connect, trusted
-from fleet.motion.kernels.records import Wires
+from fleet.motion.kernels.records import IntArray, Records, Wires
 from fleet.robot import Robot, RobotSpec
 from worlds.arena import Arena
+from worlds.shapes import Corner
 
 SLOP = 1e-4  # [m] pymunk's own 0.1 is in units of a picture
 ITERATIONS = 10  # of the contact solver in a step
@@ -42,9 +40,8 @@ class Engine:
     def _fence(self, arena: Arena) -> None:
         """Walls and obstacles, as static segments."""
         w, h = arena.width, arena.height
-        corners = [((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))]
-        corners += [polygon.corners for polygon in arena.obstacles]
-        for loop in corners:
+        walls: tuple[Corner, ...] = ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))
+        for loop in (walls, *(polygon.corners for polygon in arena.obstacles)):
             for a, b in zip(loop, (*loop[1:], loop[0]), strict=True):
                 self.space.add(pymunk.Segment(self.space.static_body, a, b, 0.0))
 
@@ -59,7 +56,7 @@ class Engine:
         """The robot rests: its body cannot be moved."""
         self.bodies[robot].body_type = pymunk.Body.STATIC
 
-    def step(self, movers: NDArray[Any], active: NDArray[np.int64], dt: float) -> None:
+    def step(self, movers: Records, active: IntArray, dt: float, substeps: int) -> None:
         """Carry out the commands of the ``active`` movers for a step, by the public interface."""
         awake = [movers[slot] for slot in active if movers[slot]["awake"]]
         for mover in awake:
@@ -68,7 +65,8 @@ class Engine:
                 body.body_type = pymunk.Body.DYNAMIC
             body.velocity = (float(mover["vx"]), float(mover["vy"]))
             body.angular_velocity = float(mover["spin"])
-        self.space.step(dt)
+        for _ in range(substeps):
+            self.space.step(dt / substeps)
         for mover in awake:
             body = self.bodies[mover["robot"]]
             mover["x"], mover["y"] = body.position

@@ -8,13 +8,10 @@ from __future__ import annotations
 from math import ceil, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fleet.motion.kernels.grid import columns_near, put, rows_near
-from fleet.motion.kernels.records import DISC, EDGE, GRID, Floor
+from fleet.motion.kernels.records import DISC, EDGE, GRID, Floor, IntArray, Records
 from worlds.arena import Arena
-
-CELLS_PER_ROBOT = 1.0
 
 
 def lay_out(arena: Arena, radius: float, robots: int) -> Floor:
@@ -45,9 +42,9 @@ def lay_out(arena: Arena, radius: float, robots: int) -> Floor:
     return floor
 
 
-def _grid(arena: Arena, radius: float, things: int) -> NDArray[np.void]:
+def _grid(arena: Arena, radius: float, things: int) -> Records:
     """Cells of about one thing each, but no smaller than a robot."""
-    cell = max(2.0 * radius, sqrt(arena.width * arena.height / max(things * CELLS_PER_ROBOT, 1.0)))
+    cell = max(2.0 * radius, sqrt(arena.width * arena.height / max(things, 1)))
     grid = np.zeros(1, GRID)
     grid[0] = (
         arena.width, arena.height, radius, cell,
@@ -56,18 +53,19 @@ def _grid(arena: Arena, radius: float, things: int) -> NDArray[np.void]:
     return grid
 
 
-def _edges(arena: Arena, first: int) -> NDArray[np.void]:
+def _edges(arena: Arena, first: int) -> Records:
     """The sides of the obstacles; their corners are discs from ``first`` on."""
     rows = []
     for polygon in arena.obstacles:
         corners = polygon.corners
-        for k, ((ax, ay), (bx, by)) in enumerate(zip(corners, (*corners[1:], corners[0]), strict=True)):
-            rows.append((ax, ay, bx, by, 0.0, first + k, first + (k + 1) % len(corners)))
+        for k, a in enumerate(corners):
+            after = (k + 1) % len(corners)
+            rows.append((*a, *corners[after], 0.0, first + k, first + after))
         first += len(corners)
     return np.array(rows, EDGE)
 
 
-def _bin(grid: NDArray[np.void], edges: NDArray[np.void]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _bin(grid: Records, edges: Records) -> tuple[IntArray, IntArray]:
     """The edges of each cell that they cross: where each cell's begin, and all by cell."""
     columns, rows = int(grid[0]["columns"]), int(grid[0]["rows"])
     held: list[list[int]] = [[] for _ in range(columns * rows)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import ceil, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from fleet.motion.kernels.records import GRIP, LAW
 from fleet.motion.options import DriveOptions
 from fleet.robot import RobotSpec
 
+SINK = 5e-4  # [m] that bodies which drive into each other may sink in before they are stopped
 TICK = 1.0 / 15.0  # [s] from knot to knot of a track, about
 
 
@@ -41,8 +42,14 @@ def law_of(
         stride,
         2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt),
         0 if sample_interval is None else max(1, round(sample_interval / options.dt)),
+        1,
     )
     return law
+
+
+def fine_substeps(spec: RobotSpec, options: DriveOptions) -> int:
+    """Into how many steps of the engine a step must be divided where bodies may touch."""
+    return ceil(2.0 * spec.cruise * options.dt / SINK)
 
 
 def _strays(spec: RobotSpec, tick: float) -> float:

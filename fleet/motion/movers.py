@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
 from fleet.motion.engine import Engine
-from fleet.motion.kernels.records import ARRIVED, MOVER, PIECE, Floor, Traffic
+from fleet.motion.kernels.records import MOVER, PIECE, Floor, Traffic
 from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
 from protocols.messages import Point, RobotId
 
 Path = NDArray[Any]  # (k,) PIECE
+SLOW = 0.1  # [m/s] below this a robot counts as stopped
 
 
 class Movers:
@@ -29,7 +30,9 @@ class Movers:
             law,
             np.zeros(0, MOVER),
             np.zeros((0, 16), PIECE),
-            np.zeros((0, 64, 2)),
+            np.zeros((0, 61, 2), np.float32),
+            np.zeros((0, 4)),
+            np.zeros(0, np.int64),
             np.zeros(1, MOVER),
             np.zeros((0, 4)),
             np.zeros(0, np.int64),
@@ -127,11 +130,18 @@ class Movers:
         found: list[int] = self._found[:count].tolist()
         return found
 
+    def stopped(self, slot: int) -> list[tuple[RobotId, Point]]:
+        """Who has come to a stop on its way, but for the mover in ``slot``, and where [m]."""
+        movers = self.traffic.movers[self._active[self._active != slot]]
+        slow = np.hypot(movers["ux"], movers["uy"]) < SLOW
+        return [
+            (int(mover["robot"]), (float(mover["x"]), float(mover["y"])))
+            for mover in movers[slow & (movers["awake"] != 0)]
+        ]
+
     def _run(self, step: int, steps: int) -> tuple[int, int, int]:
-        found: tuple[int, int, int] = run(
-            self.traffic, self._wires, self._active, step, steps, self._samples
-        )
-        return found
+        assert self._wires is not None
+        return run(self.traffic, self._wires, self._active, step, steps, self._samples)
 
     def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
         """The same as the compiled loop, with the engine stepped over its public interface."""
@@ -142,7 +152,7 @@ class Movers:
             if len(self._samples) and kept + self._count > len(self._samples):
                 break
             if command(movers, pieces, law, self._active, step + made) > 0:
-                self._engine.step(movers, self._active, float(law["dt"]))
+                self._engine.step(movers, self._active, float(law["dt"]), int(law["substeps"]))
             over = settle(movers, law, self._active)
             made += 1
             if law["sample"]:
@@ -158,12 +168,9 @@ class Movers:
     def _more_slots(self) -> None:
         have = len(self.traffic.movers)
         more = max(4, have)
+        by_slot = ("movers", "pieces", "tracks", "boxes", "near", "poses", "over")
         self.traffic = self.traffic._replace(
-            movers=_longer(self.traffic.movers, have + more),
-            pieces=_longer(self.traffic.pieces, have + more),
-            tracks=_longer(self.traffic.tracks, have + more),
-            poses=_longer(self.traffic.poses, have + more),
-            over=_longer(self.traffic.over, have + more),
+            **{name: _longer(getattr(self.traffic, name), have + more) for name in by_slot}
         )
         self._slots = _longer(self._slots, have + more)
         self._found = np.zeros(have + more, np.int64)

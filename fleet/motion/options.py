@@ -70,4 +70,3 @@ class DriveOptions:
             return self.clearances
         at_cruise = spec.cruise / (GRIP * spec.turn_rate) - 2.0 * spec.radius
         return (at_cruise, *self.clearances) if at_cruise > self.clearances[0] else self.clearances
-

@@ -6,6 +6,7 @@ Importing this module loads numba.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ class Planner:
         self.floor = lay_out(arena, radius, len(points))
         self._clearances = np.array(clearances)
         self._pieces = np.zeros(32, PIECE)
+        self._count = len(points)
         self._known: dict[tuple[RobotId, Point], Plan] = {}
         which, other = move_in(self.floor, np.array(points, float).reshape(-1, 2))
         if which != NOBODY:
@@ -61,9 +63,29 @@ class Planner:
             if end <= len(self._pieces):
                 break
             self._pieces = np.zeros(2 * end, PIECE)
-        found = Plan(None if end == NO_PATH else self._pieces[1:end].copy(), length, (x, y))
+        pieces = None if end == NO_PATH else self._pieces[1:end].copy()
+        found = Plan(pieces, float(length), (float(x), float(y)))
         self._known[robot, site] = found
         return found
+
+    def plan_among(
+        self, stopped: Sequence[tuple[RobotId, Point]], robot: RobotId, position: Point, site: Point
+    ) -> Plan:
+        """The same around others that have ``stopped`` on their ways, if there is one."""
+        around = self._count
+        self._known.clear()
+        for other, where in stopped:
+            put(self.floor, around + other, *where)
+        found = self.plan(robot, position, site)
+        for other, _ in stopped:
+            put(self.floor, around + other, nan, nan)
+        self._known.clear()
+        return self.plan(robot, position, site) if found.pieces is None else found
+
+    def resting_place(self, robot: RobotId) -> Point:
+        """Where the robot rests, or will [m]."""
+        disc = self.floor.discs[robot]
+        return float(disc["x"]), float(disc["y"])
 
     def rest(self, robot: RobotId, position: Point) -> None:
         """The robot rests at ``position`` [m], or will."""

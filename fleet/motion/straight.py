@@ -79,7 +79,7 @@ class StraightMotion:
                 charge,
                 energy,
                 outcome,
-            )  # fmt: skip
+            )
         )
 
     def advance(self, until: float) -> Sequence[Trip]:
@@ -109,7 +109,9 @@ class StraightMotion:
                     leg.ends,
                     dist(leg.origin, leg.end),
                     leg.energy,
-                )  # fmt: skip
+                    planned=dist(leg.origin, leg.site),
+                    energy_path=leg.energy,
+                )
             )
         self._legs = under_way
         return trips

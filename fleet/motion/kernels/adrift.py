@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from fleet.motion.kernels.drive import pay
 from fleet.motion.kernels.geometry import wrapped
 from fleet.motion.kernels.profile import heading_at
 from fleet.motion.kernels.records import ARC, ARRIVED, EMPTY, LINE, LOST
@@ -19,7 +20,8 @@ LATERAL = 2.0  # [1/s] by which a holonomic robot reduces its offset
 FACE = 1.2  # [rad] facing further away than this, it stops and turns
 FACED = 0.05  # [rad] until it faces the path like this
 ON_PATH = 1e-4  # [m] within this, and ten times as much in [rad], it is back
-THERE = 1e-3  # [m] from the goal it has arrived
+THERE = 1e-3  # [m] from the end of the path it stops
+CLOSE = 0.01  # [m] from there it has arrived, otherwise it has missed it
 PROGRESS = 0.005  # [m] that it must gain
 PATIENCE = 1.0  # [s] in which it must
 ASTRAY = 0.15  # [m] off the path it gives up
@@ -62,7 +64,7 @@ def _spin_towards(mover, error, law):
 
 
 @kernel
-def _steer(mover, piece, left, error, speed, law):
+def _steer(piece, left, error, speed, law):
     """The turn rate [rad/s] that follows the path at ``speed`` [m/s] and leads back to it."""
     bend = piece.sense / piece.radius if piece.kind == ARC else 0.0
     pull = 1.0 if abs(error) < 1e-6 else math.sin(error) / error
@@ -93,13 +95,13 @@ def _wish(mover, piece, along, left, to_go, law):
         mover.adrift = 1
     if mover.adrift == 2:
         return 0.0, 0.0, _spin_towards(mover, error, law)
-    spin = _steer(mover, piece, left, error, speed, law)
+    spin = _steer(piece, left, error, speed, law)
     middle = facing + 0.5 * spin * law.dt
     return speed * math.cos(middle), speed * math.sin(middle), spin
 
 
 @kernel
-def _pay(mover, law):
+def _spend(mover, law):
     """Drain what a step at the commanded velocity takes."""
     square = mover.vx * mover.vx + mover.vy * mover.vy
     speed = math.sqrt(square)
@@ -107,11 +109,7 @@ def _pay(mover, law):
     if law.kinetic:
         gained = square - mover.ux * mover.ux - mover.uy * mover.uy
         energy += 0.5 * law.mass * max(0.0, gained)
-    if energy > mover.charge:
-        energy, mover.phase = mover.charge, EMPTY
-    mover.charge -= energy
-    mover.spent += energy
-    mover.spent_adrift += energy
+    mover.spent_adrift += pay(mover, energy)
     mover.path += speed * law.dt
     mover.jostled += speed * law.dt
 
@@ -129,12 +127,12 @@ def recover(mover, pieces, law):
     change = math.hypot(dx, dy)
     ease = min(1.0, law.acceleration * law.dt / change) if change > 0.0 else 1.0
     mover.vx, mover.vy, mover.spin = mover.ux + ease * dx, mover.uy + ease * dy, spin
-    _pay(mover, law)
+    _spend(mover, law)
     speed = math.hypot(mover.vx, mover.vy)
     if mover.phase == EMPTY:
         return
     if to_go <= THERE and speed <= 2.0 * law.acceleration * law.dt:
-        mover.phase = ARRIVED if abs(left) <= 10.0 * THERE else LOST
+        mover.phase = ARRIVED if max(abs(left), -to_go) <= CLOSE else LOST
     elif abs(left) > ASTRAY or mover.since * law.dt > PATIENCE:
         mover.phase = LOST
     elif abs(left) <= ON_PATH and ease == 1.0 and not mover.touching:

@@ -71,11 +71,17 @@ def _lasting(piece, speed, last, time, charge):
 
 
 @kernel
-def _pay(mover, piece, energy):
-    mover.charge -= energy
-    mover.spent += energy
-    if piece.kind == TURN:
-        mover.spent_turning += energy
+def pay(mover, energy):
+    """Drain the battery by ``energy`` [J] if it holds as much; returns what was drained.
+
+    If it does not, it is empty now to the last bit, and the trip is over.
+    """
+    if energy > mover.held - mover.spent:
+        energy = mover.held - mover.spent
+        mover.spent, mover.phase = mover.held, EMPTY
+    else:
+        mover.spent += energy
+    return energy
 
 
 @kernel
@@ -95,23 +101,25 @@ def _go_on(mover, pieces, time):
             last = mover.speed + time / lasts * (last - mover.speed)
             lasts, far = time, 0.5 * (mover.speed + last) * time
         energy = _energy(piece, mover.speed, last, lasts)
-        if energy > mover.charge:
-            share = _lasting(piece, mover.speed, last, lasts, mover.charge)
+        charge = mover.held - mover.spent
+        if energy > charge:
+            share = _lasting(piece, mover.speed, last, lasts, charge)
             last = mover.speed + share * (last - mover.speed)
             far = 0.5 * (mover.speed + last) * share * lasts
-            energy, mover.phase = mover.charge, EMPTY
-        _pay(mover, piece, energy)
+        energy = pay(mover, energy)
         mover.along += far
-        if piece.kind != TURN:
+        if piece.kind == TURN:
+            mover.spent_turning += energy
+        else:
             mover.path += far
         if mover.phase == EMPTY:
-            mover.charge, mover.speed = 0.0, 0.0
+            mover.speed = 0.0
             return
         mover.speed = last
         time -= lasts
-    if mover.piece + 1 == mover.count:
-        if pieces[mover.slot, mover.piece].length - mover.along <= NEAR:
-            mover.phase, mover.speed = ARRIVED, 0.0
+    left = pieces[mover.slot, mover.piece].length - mover.along
+    if mover.piece + 1 == mover.count and left <= NEAR:
+        mover.phase, mover.speed = ARRIVED, 0.0
 
 
 @kernel
@@ -138,11 +146,12 @@ def drive(mover, pieces, law, dt):
 
 
 @kernel
-def coast(mover, dt):
+def coast(mover, dt, substeps):
     """Move for ``dt`` [s] as commanded, with nothing in the way: what the engine does."""
-    mover.x += mover.vx * dt
-    mover.y += mover.vy * dt
-    mover.heading += mover.spin * dt
+    for _ in range(substeps):
+        mover.x += mover.vx * (dt / substeps)
+        mover.y += mover.vy * (dt / substeps)
+        mover.heading += mover.spin * (dt / substeps)
     mover.ux, mover.uy = mover.vx, mover.vy
 
 
@@ -150,9 +159,4 @@ def coast(mover, dt):
 def wait(mover, law):
     """Let ``mover`` stand for a step; it may cost idle power."""
     mover.waited += 1
-    energy = law.idle * law.dt
-    if energy > mover.charge:
-        energy, mover.phase = mover.charge, EMPTY
-    mover.charge -= energy
-    mover.spent += energy
-    mover.spent_waiting += energy
+    mover.spent_waiting += pay(mover, law.idle * law.dt)

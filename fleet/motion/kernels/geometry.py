@@ -44,12 +44,15 @@ def _side(ax, ay, bx, by, px, py):
 @kernel
 def between_segments(ax, ay, bx, by, cx, cy, dx, dy):
     """Distance [m] between two segments; 0 if they cross."""
-    if (_side(ax, ay, bx, by, cx, cy) > 0.0) != (_side(ax, ay, bx, by, dx, dy) > 0.0):
-        if (_side(cx, cy, dx, dy, ax, ay) > 0.0) != (_side(cx, cy, dx, dy, bx, by) > 0.0):
-            return 0.0
+    first = (_side(ax, ay, bx, by, cx, cy) > 0.0) != (_side(ax, ay, bx, by, dx, dy) > 0.0)
+    second = (_side(cx, cy, dx, dy, ax, ay) > 0.0) != (_side(cx, cy, dx, dy, bx, by) > 0.0)
+    if first and second:
+        return 0.0
     return min(
-        min(to_segment(ax, ay, cx, cy, dx, dy), to_segment(bx, by, cx, cy, dx, dy)),
-        min(to_segment(cx, cy, ax, ay, bx, by), to_segment(dx, dy, ax, ay, bx, by)),
+        to_segment(ax, ay, cx, cy, dx, dy),
+        to_segment(bx, by, cx, cy, dx, dy),
+        to_segment(cx, cy, ax, ay, bx, by),
+        to_segment(dx, dy, ax, ay, bx, by),
     )
 
 
@@ -81,9 +84,7 @@ def arc_to_segment(cx, cy, radius, first, sweep, ax, ay, bx, by):
     """
     last = first + sweep
     distance = min(
-        to_segment(
-            cx + radius * math.cos(first), cy + radius * math.sin(first), ax, ay, bx, by
-        ),
+        to_segment(cx + radius * math.cos(first), cy + radius * math.sin(first), ax, ay, bx, by),
         to_segment(cx + radius * math.cos(last), cy + radius * math.sin(last), ax, ay, bx, by),
     )
     distance = min(distance, to_arc(ax, ay, cx, cy, radius, first, sweep))
@@ -101,7 +102,7 @@ def arc_to_segment(cx, cy, radius, first, sweep, ax, ay, bx, by):
         return distance
     half = math.sqrt((radius * radius - off * off) / square)
     for share in (foot - half, foot + half):
-        if 0.0 <= share <= 1.0:
-            if _spans(first, sweep, math.atan2(ay + share * dy - cy, ax + share * dx - cx)):
-                return 0.0
+        angle = math.atan2(ay + share * dy - cy, ax + share * dx - cx)
+        if 0.0 <= share <= 1.0 and _spans(first, sweep, angle):
+            return 0.0
     return distance

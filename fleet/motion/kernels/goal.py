@@ -93,16 +93,18 @@ def _borders(floor, me, x, y, reach, clearance, box):
 
 
 @kernel
-def _across_circles(circles, k, x, y, found):
+def _across_circles(circles, k, x, y, sx, sy, found):
     """Add to ``found`` where circle ``k`` is nearest to (x, y), and where it meets those before
-    it; returns how many."""
+    it; returns how many. If (x, y) is its centre, nearest is towards (sx, sy).
+    """
     cx, cy, radius = circles[k, 0], circles[k, 1], circles[k, 2]
-    away = math.hypot(x - cx, y - cy)
+    dx, dy = x - cx, y - cy
+    if math.hypot(dx, dy) < OFF:
+        dx, dy = sx - cx, sy - cy
+    away = math.hypot(dx, dy)
     count = 0
     if away > OFF:
-        count = _point(
-            found, 0, cx + (x - cx) / away * radius, cy + (y - cy) / away * radius
-        )
+        count = _point(found, 0, cx + dx / away * radius, cy + dy / away * radius)
     for other in range(k):
         dx, dy = circles[other, 0] - cx, circles[other, 1] - cy
         apart, second = math.hypot(dx, dy), circles[other, 2]
@@ -123,7 +125,8 @@ def _across_circles(circles, k, x, y, found):
 @kernel
 def _across_segments(circles, segments, k, x, y, found):
     """Add to ``found`` where segment ``k`` is nearest to (x, y), and where it meets circles and
-    the segments before it; returns how many."""
+    the segments before it; returns how many.
+    """
     ax, ay, bx, by = segments[k, 0], segments[k, 1], segments[k, 2], segments[k, 3]
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
@@ -152,8 +155,8 @@ def _across_segments(circles, segments, k, x, y, found):
 
 
 @kernel
-def free_point(floor, me, x, y, clearance, box):
-    """The free point nearest to (x, y) [m]: (exists, x, y).
+def free_point(floor, me, sx, sy, x, y, clearance, box):
+    """The free point nearest to (x, y) [m] for a robot from (sx, sy): (exists, x, y).
 
     ``box``: (4,) the least and the greatest x and y that the robot's centre may have [m].
     """
@@ -169,7 +172,7 @@ def free_point(floor, me, x, y, clearance, box):
         best, bx, by = math.inf, x, y
         for k in range(len(circles) + len(segments)):
             if k < len(circles):
-                count = _across_circles(circles, k, x, y, found)
+                count = _across_circles(circles, k, x, y, sx, sy, found)
             else:
                 count = _across_segments(circles, segments, k - len(circles), x, y, found)
             for c in range(count):

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from fleet.motion.kernels.geometry import to_segment
-from fleet.motion.kernels.records import NOBODY
+from fleet.motion.kernels.records import NOBODY, Floor, Record
 from protocols.compiled import kernel
 
 
 @kernel
 def _clamp(value, cell, count):
     """The row or column of a coordinate [m]; what lies outside belongs to the border."""
-    return min(max(int(math.floor(value / cell)), 0), count - 1)
+    return min(max(math.floor(value / cell), 0), count - 1)
 
 
 @kernel
@@ -21,7 +21,7 @@ def _cell_of(grid, x, y):
 
 
 @kernel
-def put(floor, disc, x, y):
+def put(floor: Floor, disc: int, x: float, y: float) -> None:
     """Move a disc to (x, y) [m]; NaN: take it away."""
     grid, discs, heads = floor.grid[0], floor.discs, floor.heads
     moved = discs[disc]
@@ -54,7 +54,9 @@ def _slab(ax, ay, bx, by, low, high):
 
 
 @kernel
-def columns_near(grid, row, ax, ay, bx, by, reach):
+def columns_near(
+    grid: Record, row: int, ax: float, ay: float, bx: float, by: float, reach: float
+) -> tuple[int, int]:
     """First and last column of the cells in ``row`` within ``reach`` [m] of a segment."""
     low, high = row * grid.cell, (row + 1) * grid.cell
     if row == 0:
@@ -69,7 +71,7 @@ def columns_near(grid, row, ax, ay, bx, by, reach):
 
 
 @kernel
-def rows_near(grid, ay, by, reach):
+def rows_near(grid: Record, ay: float, by: float, reach: float) -> tuple[int, int]:
     """First and last row of the cells within ``reach`` [m] of a segment."""
     return (
         _clamp(min(ay, by) - reach, grid.cell, grid.rows),
@@ -80,7 +82,8 @@ def rows_near(grid, ay, by, reach):
 @kernel
 def discs_near(floor, me, ax, ay, bx, by, reach):
     """List in ``floor.near`` the discs but ``me`` whose centre is within ``reach`` [m] of a
-    segment; returns how many."""
+    segment; returns how many.
+    """
     grid, discs, heads, near = floor.grid[0], floor.discs, floor.heads, floor.near
     count = 0
     first, last = rows_near(grid, ay, by, reach)
@@ -89,18 +92,19 @@ def discs_near(floor, me, ax, ay, bx, by, reach):
         for column in range(left, right + 1):
             disc = heads[row * grid.columns + column]
             while disc != NOBODY:
-                if disc != me:
-                    if to_segment(discs[disc].x, discs[disc].y, ax, ay, bx, by) < reach:
-                        near[count] = disc
-                        count += 1
-                disc = discs[disc].after
+                found = discs[disc]
+                if disc != me and to_segment(found.x, found.y, ax, ay, bx, by) < reach:
+                    near[count] = disc
+                    count += 1
+                disc = found.after
     return count
 
 
 @kernel
 def edges_near(floor, ax, ay, bx, by, reach, at):
     """List in ``floor.near``, from ``at`` on, the edges in cells within ``reach`` [m] of a
-    segment; returns the end of the list."""
+    segment; returns the end of the list.
+    """
     grid, near, marks = floor.grid[0], floor.near, floor.marks
     if len(floor.edges) == 0:
         return at

@@ -16,7 +16,7 @@ import numpy as np
 from fleet.motion.kernels.geometry import arc_to_segment, between_segments, to_arc, to_segment
 from fleet.motion.kernels.goal import free_point, is_free
 from fleet.motion.kernels.grid import discs_near, edges_near, put
-from fleet.motion.kernels.records import CIRCLE, LINE, NOBODY
+from fleet.motion.kernels.records import CIRCLE, LINE, NOBODY, FloatArray, Floor, Records
 from fleet.motion.kernels.search import GOAL, START, lay, lay_line, shortest
 from fleet.motion.kernels.tangents import GRAZE
 from protocols.compiled import kernel
@@ -183,7 +183,16 @@ def _shortest_path(floor, me, sx, sy, gx, gy, clearance, box, pieces, first):
 
 
 @kernel
-def plan(floor, me, sx, sy, x, y, clearances, pieces):
+def plan(
+    floor: Floor,
+    me: int,
+    sx: float,
+    sy: float,
+    x: float,
+    y: float,
+    clearances: FloatArray,
+    pieces: Records,
+) -> tuple[int, float, float, float]:
     """The path of robot ``me`` from where it stands, s [m], to the site (x, y) [m].
 
     ``clearances``: (k,) to try in turn [m]. ``pieces``: (room,) PIECE; lines and arcs are
@@ -199,7 +208,7 @@ def plan(floor, me, sx, sy, x, y, clearances, pieces):
         box[0], box[1] = min(margin, sx), max(grid.width - margin, sx)
         box[2], box[3] = min(margin, sy), max(grid.height - margin, sy)
         squeezed = _squeeze(floor, me, sx, sy, clearances[k], saved)
-        exists, gx, gy = free_point(floor, me, x, y, clearances[k], box)
+        exists, gx, gy = free_point(floor, me, sx, sy, x, y, clearances[k], box)
         if exists:
             end = _shortest_path(floor, me, sx, sy, gx, gy, clearances[k], box, pieces, 1)
         _unsqueeze(floor, saved, squeezed)
@@ -212,7 +221,7 @@ def plan(floor, me, sx, sy, x, y, clearances, pieces):
 
 
 @kernel
-def move_in(floor, points):
+def move_in(floor: Floor, points: FloatArray) -> tuple[int, int]:
     """Put the robots where they are, ``points`` (n, 2) [m].
 
     Returns the first robot that overlaps something, and the robot that it overlaps or NOBODY;
@@ -226,7 +235,7 @@ def move_in(floor, points):
             disc = floor.discs[floor.near[other]]
             if math.hypot(disc.x - x, disc.y - y) < disc.core + radius - GRAZE:
                 return k, floor.near[other] if floor.near[other] < len(points) else NOBODY
-        if min(min(x, box[1] - x), min(y, box[3] - y)) < radius - GRAZE:
+        if min(x, box[1] - x, y, box[3] - y) < radius - GRAZE:
             return k, NOBODY
         if not is_free(floor, k, x, y, 0.0, box):
             return k, NOBODY

@@ -24,7 +24,8 @@ def heading_at(piece, along):
 @kernel
 def _turn_first(piece, then, x, y, heading):
     """Make ``piece`` the turn on the spot at (x, y) [m] from ``heading`` [rad] to that of the
-    piece ``then``; returns whether there is anything to turn."""
+    piece ``then``; returns whether there is anything to turn.
+    """
     angle = wrapped(heading_at(then, 0.0) - heading)
     piece.kind, piece.x, piece.y, piece.radius = TURN, x, y, 0.0
     piece.angle, piece.sense = heading, 1.0 if angle >= 0.0 else -1.0
@@ -35,7 +36,8 @@ def _turn_first(piece, then, x, y, heading):
 @kernel
 def _pay(piece, law, one, two, inertia):
     """Set the power of a piece whose two wheels turn ``one`` and ``two`` times as fast as it is
-    driven: at the body's speed, or half for each wheel at its own."""
+    driven: at the body's speed, or half for each wheel at its own.
+    """
     piece.inertia = inertia if law.kinetic else 0.0
     piece.constant = law.constant
     if not law.per_wheel:

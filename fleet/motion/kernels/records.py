@@ -6,10 +6,15 @@ changed in place.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+Record: TypeAlias = Any  # one of those below, as numba and NumPy see them
+Records: TypeAlias = NDArray[Any]
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
 
 NOBODY = -1  # no robot, no disc, the end of a list
 
@@ -20,19 +25,24 @@ WAITING, DRIVING, ARRIVED, EMPTY, LOST, TOUCHED = 0, 1, 2, 3, 4, 5
 """Phases of a trip. From ARRIVED on the kernels leave it alone until Python has seen to it:
 EMPTY: the battery is; LOST: it got stuck or left its path; TOUCHED: it left its reservation."""
 
-DISC = np.dtype(
+
+def record_type(fields: list[tuple[str, str]]) -> np.dtype[Any]:
+    """Records whose fields are attributes, for numba as for Python."""
+    return np.dtype((np.record, np.dtype(fields, align=True)))
+
+
+DISC = record_type(
     [
         ("x", "f8"),  # centre [m]; NaN: not there
         ("y", "f8"),
         ("core", "f8"),  # radius of what stands there [m]: a robot's, or 0 of a corner
         ("after", "i8"),  # the next disc of the same cell
-    ],
-    align=True,
+    ]
 )
 """A round obstacle: first the n places where robots rest or will rest, then the n bodies that
 stand in the way without resting, then the corners of the polygons."""
 
-EDGE = np.dtype(
+EDGE = record_type(
     [
         ("ax", "f8"),  # from here [m]
         ("ay", "f8"),
@@ -41,12 +51,11 @@ EDGE = np.dtype(
         ("core", "f8"),  # 0 [m], less while a robot starts closer than it would pass
         ("a", "i8"),  # the discs of its two corners
         ("b", "i8"),
-    ],
-    align=True,
+    ]
 )
 """A side of a polygon."""
 
-GRID = np.dtype(
+GRID = record_type(
     [
         ("width", "f8"),  # of the arena [m]
         ("height", "f8"),
@@ -54,11 +63,10 @@ GRID = np.dtype(
         ("cell", "f8"),  # side of a cell [m]
         ("columns", "i8"),
         ("rows", "i8"),
-    ],
-    align=True,
+    ]
 )
 
-PIECE = np.dtype(
+PIECE = record_type(
     [
         ("kind", "i8"),
         ("x", "f8"),  # where it starts; of an arc, the centre [m]
@@ -77,13 +85,12 @@ PIECE = np.dtype(
         ("linear", "f8"),
         ("constant", "f8"),
         ("inertia", "f8"),  # kinetic energy that is paid: inertia·v²/2 [J]
-    ],
-    align=True,
+    ]
 )
 """A piece of a path. What the drive has to know of the robot's build is written here, so that
 turning and driving, wheels and bodies are all the same to it."""
 
-MOVER = np.dtype(
+MOVER = record_type(
     [
         # what every step needs
         ("robot", "i8"),
@@ -106,8 +113,8 @@ MOVER = np.dtype(
         ("spin", "f8"),  # [rad/s]
         ("ux", "f8"),  # velocity that it was left with after the step [m/s]
         ("uy", "f8"),
-        ("charge", "f8"),  # of the battery [J]
-        ("spent", "f8"),  # [J]
+        ("held", "f8"),  # the battery's charge at departure [J]
+        ("spent", "f8"),  # of it [J]
         ("path", "f8"),  # driven [m]
         ("steps", "i8"),  # driven
         # the rest of the account
@@ -123,16 +130,11 @@ MOVER = np.dtype(
         # its track
         ("first", "i8"),  # tick of its first knot
         ("knots", "i8"),
-        ("x0", "f8"),  # bounding box [m]
-        ("y0", "f8"),
-        ("x1", "f8"),
-        ("y1", "f8"),
-    ],
-    align=True,
+    ]
 )
 """A robot under way."""
 
-LAW = np.dtype(
+LAW = record_type(
     [
         ("dt", "f8"),  # of a step [s]
         ("radius", "f8"),  # of a robot [m]
@@ -154,46 +156,48 @@ LAW = np.dtype(
         ("stride", "i8"),  # steps from knot to knot of a track
         ("gap", "f8"),  # nearer than this, centres of movers are in conflict [m]
         ("sample", "i8"),  # steps from sample to sample; 0: none
-    ],
-    align=True,
+        ("substeps", "i8"),  # of the engine in a step
+    ]
 )
 """How robots drive: one for all."""
 
 GRIP = 0.95  # share of the turn rate that arcs may take; the rest is for finding back
 
-CIRCLE = np.dtype([("x", "f8"), ("y", "f8"), ("radius", "f8")], align=True)
+CIRCLE = record_type([("x", "f8"), ("y", "f8"), ("radius", "f8")])
 """What the path may wind around; start and goal have radius 0."""
 
 
 class Floor(NamedTuple):
     """What the planner sees."""
 
-    grid: NDArray[np.void]  # (1,) GRID
-    discs: NDArray[np.void]  # (2n + corners,) DISC
-    heads: NDArray[np.int64]  # (cells,) first disc of each cell
-    edges: NDArray[np.void]  # (m,) EDGE
-    bins: NDArray[np.int64]  # (cells + 1,) where each cell's edges begin in binned
-    binned: NDArray[np.int64]  # edges by cell
-    near: NDArray[np.int64]  # (discs + edges,) work space
+    grid: Records  # (1,) GRID
+    discs: Records  # (2n + corners,) DISC
+    heads: IntArray  # (cells,) first disc of each cell
+    edges: Records  # (m,) EDGE
+    bins: IntArray  # (cells + 1,) where each cell's edges begin in binned
+    binned: IntArray  # edges by cell
+    near: IntArray  # 2 × (discs + edges,) work space
     marks: NDArray[np.bool_]  # (discs + edges,) work space, all false
 
 
 class Traffic(NamedTuple):
     """Everybody under way, by slot."""
 
-    law: NDArray[np.void]  # (1,) LAW
-    movers: NDArray[np.void]  # (slots,) MOVER
-    pieces: NDArray[np.void]  # (slots, room) PIECE; the first is the turn on the spot
-    tracks: NDArray[np.float64]  # (slots, knots, 2) [m]
-    ghost: NDArray[np.void]  # (1,) MOVER, work space
-    poses: NDArray[np.float64]  # (slots, 4) x, y, heading, charge [m, m, rad, J]
-    over: NDArray[np.int64]  # (slots,) places in the order of departure
+    law: Records  # (1,) LAW
+    movers: Records  # (slots,) MOVER
+    pieces: Records  # (slots, room) PIECE; the first is the turn on the spot
+    tracks: NDArray[np.float32]  # (slots, knots, 2) [m]
+    boxes: FloatArray  # (slots, 4) bounds of the tracks: least x, y, greatest x, y [m]
+    near: IntArray  # (slots,) work space
+    ghost: Records  # (1,) MOVER, work space
+    poses: FloatArray  # (slots, 4) x, y, heading, charge [m, m, rad, J]
+    over: IntArray  # (slots,) places in the order of departure
 
 
 class Wires(NamedTuple):
     """What the kernels need to call the engine: see :mod:`fleet.motion.chipmunk`."""
 
-    calls: NDArray[np.int64]  # (7,) addresses of functions and buffers; 0: there is no engine
-    bodies: NDArray[np.int64]  # (n,) addresses by robot
-    numbers: NDArray[np.float64]  # what is read from a body, or written to it
+    calls: IntArray  # (7,) addresses of functions and buffers; 0: there is no engine
+    bodies: IntArray  # (n,) addresses by robot
+    numbers: FloatArray  # what is read from a body, or written to it
     counts: NDArray[np.int32]  # (1,) how many of them are in use

@@ -10,7 +10,20 @@ from fleet.motion.kernels.drive import coast, drive, position_at, wait
 from fleet.motion.kernels.geometry import wrapped
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.profile import set_off
-from fleet.motion.kernels.records import ARRIVED, DRIVING, MOVER, TOUCHED, WAITING
+from fleet.motion.kernels.records import (
+    ARRIVED,
+    DRIVING,
+    MOVER,
+    TOUCHED,
+    WAITING,
+    FloatArray,
+    Floor,
+    IntArray,
+    Record,
+    Records,
+    Traffic,
+    Wires,
+)
 from fleet.motion.kernels.tracks import foresee, reserve
 from protocols.compiled import kernel
 
@@ -18,14 +31,17 @@ STILL = 1e-9  # [m/s] a smaller difference to the command is no contact
 
 
 @kernel
-def launch(floor, traffic, active, slot, path, step):
+def launch(
+    floor: Floor, traffic: Traffic, active: IntArray, slot: int, path: Records, step: int
+) -> int:
     """Send the mover in ``slot`` along ``path``, (k,) PIECE, at ``step`` or as soon as its way is
     free, and reserve the place where it will rest.
 
     Returns how many knots its track has; if that is more than there is room for, it must be
     launched again with more.
     """
-    movers, pieces, tracks, law = traffic.movers, traffic.pieces, traffic.tracks, traffic.law[0]
+    movers, pieces, law = traffic.movers, traffic.pieces, traffic.law[0]
+    tracks, boxes = traffic.tracks, traffic.boxes
     mover, end = movers[slot], len(path) + 1
     for k in range(1, end):
         pieces[slot, k] = path[k - 1]
@@ -40,22 +56,35 @@ def launch(floor, traffic, active, slot, path, step):
     if law.reserved:
         traffic.ghost[0] = mover
         ghost = traffic.ghost[0]
-        foresee(mover, ghost, pieces, tracks, law, step)
+        foresee(mover, ghost, pieces, tracks, boxes, law, step)
         if mover.knots > tracks.shape[1]:
-            return mover.knots
-        mover.start += law.stride * reserve(mover, movers, tracks, active, law)
+            return int(mover.knots)
+        put_off = reserve(mover, movers, tracks, boxes, active, traffic.near, law)
+        mover.start += law.stride * put_off
         x, y = ghost.x, ghost.y
     put(floor, mover.robot, x, y)
-    return mover.knots
+    return int(mover.knots)
 
 
 @kernel
-def embark(floor, traffic, active, slot, robot, x, y, heading, charge, path, step):
+def embark(
+    floor: Floor,
+    traffic: Traffic,
+    active: IntArray,
+    slot: int,
+    robot: int,
+    x: float,
+    y: float,
+    heading: float,
+    charge: float,
+    path: Records,
+    step: int,
+) -> int:
     """Give ``robot`` the mover in ``slot`` and send it along ``path``; see launch."""
     traffic.movers[slot] = np.zeros(1, MOVER)[0]
     mover = traffic.movers[slot]
     mover.robot, mover.slot, mover.departed = robot, slot, step
-    mover.x, mover.y, mover.heading, mover.charge = x, y, heading, charge
+    mover.x, mover.y, mover.heading, mover.held = x, y, heading, charge
     return launch(floor, traffic, active, slot, path, step)
 
 
@@ -95,7 +124,7 @@ def _see(mover, law):
 
 
 @kernel
-def command(movers, pieces, law, active, step):
+def command(movers: Records, pieces: Records, law: Record, active: IntArray, step: int) -> int:
     """Decide what everybody does in ``step``; returns how many are on the move."""
     driving = 0
     for k in range(len(active)):
@@ -105,7 +134,7 @@ def command(movers, pieces, law, active, step):
 
 
 @kernel
-def settle(movers, law, active):
+def settle(movers: Records, law: Record, active: IntArray) -> int:
     """See what became of the commands; returns how many trips need looking after."""
     over = 0
     for k in range(len(active)):
@@ -132,7 +161,9 @@ def _hear(mover, calls, bodies, numbers, counts):
 
 
 @kernel
-def sample(movers, law, active, samples, count, step):
+def sample(
+    movers: Records, law: Record, active: IntArray, samples: FloatArray, count: int, step: int
+) -> int:
     """Keep the poses at ``step`` of those whose turn it is; returns how many are kept now."""
     for k in range(len(active)):
         mover = movers[active[k]]
@@ -140,19 +171,20 @@ def sample(movers, law, active, samples, count, step):
         if turn or mover.phase >= ARRIVED:
             samples[count, 0], samples[count, 1] = mover.robot, step * law.dt
             samples[count, 2], samples[count, 3] = mover.x, mover.y
-            samples[count, 4], samples[count, 5] = mover.heading, mover.charge
+            samples[count, 4] = wrapped(mover.heading)
+            samples[count, 5] = mover.held - mover.spent
             count += 1
     return count
 
 
 @kernel
-def report(movers, active, poses, over):
+def report(movers: Records, active: IntArray, poses: FloatArray, over: IntArray) -> int:
     """Write down how everybody is now, and who needs looking after, in the order of ``active``."""
     count = 0
     for k in range(len(active)):
         mover = movers[active[k]]
         poses[k, 0], poses[k, 1] = mover.x, mover.y
-        poses[k, 2], poses[k, 3] = wrapped(mover.heading), mover.charge
+        poses[k, 2], poses[k, 3] = wrapped(mover.heading), mover.held - mover.spent
         if mover.phase >= ARRIVED:
             over[count] = k
             count += 1
@@ -160,7 +192,14 @@ def report(movers, active, poses, over):
 
 
 @kernel
-def run(traffic, wires, active, step, steps, samples):
+def run(
+    traffic: Traffic,
+    wires: Wires,
+    active: IntArray,
+    step: int,
+    steps: int,
+    samples: FloatArray,
+) -> tuple[int, int, int]:
     """Drive on from ``step`` until trips need looking after, ``steps`` at most.
 
     ``wires``: the engine; with none, all that drive coast. Returns (steps made, samples kept,
@@ -181,9 +220,10 @@ def run(traffic, wires, active, step, steps, samples):
                 if engine:
                     _tell(mover, calls, bodies, numbers, counts)
                 else:
-                    coast(mover, law.dt)
+                    coast(mover, law.dt, law.substeps)
         if engine and driving > 0:
-            step_space(calls, law.dt)
+            for _ in range(law.substeps):
+                step_space(calls, law.dt / law.substeps)
         for k in range(len(active)):
             mover = movers[active[k]]
             if engine and mover.awake:

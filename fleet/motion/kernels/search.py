@@ -12,14 +12,14 @@ import math
 import numpy as np
 
 from fleet.motion.kernels.geometry import TWO_PI, turned
-from fleet.motion.kernels.records import ARC, LINE, NOBODY
+from fleet.motion.kernels.records import ARC, LINE, NOBODY, record_type
 from fleet.motion.kernels.tangents import GRAZE, arc_is_free, free_sweep, line_is_free, tangent
 from protocols.compiled import kernel
 
 START, GOAL = 0, 1  # circles of radius 0
 SHORT = 1e-8  # [m] pieces below this are left out
 
-NODE = np.dtype(
+NODE = record_type(
     [
         ("circle", "i8"),  # where the line arrives
         ("side", "i8"),  # +1: on around it counter-clockwise
@@ -32,8 +32,7 @@ NODE = np.dtype(
         ("cost", "f8"),  # length from the start [m]
         ("reach", "f8"),  # how far it can go on along the circle [rad], once settled
         ("before", "i8"),  # the node that was settled before on this circle and side
-    ],
-    align=True,
+    ]
 )
 
 

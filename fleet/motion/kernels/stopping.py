@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.profile import brake_back
-from fleet.motion.kernels.records import DRIVING
-from fleet.motion.kernels.tracks import conflict, foresee
+from fleet.motion.kernels.records import DRIVING, Floor, IntArray, Traffic
+from fleet.motion.kernels.tracks import bound, conflict, foresee, neighbours
 from protocols.compiled import kernel
 
 
@@ -27,40 +27,41 @@ def _cut(mover, pieces):
 
 
 @kernel
-def stop_short(floor, traffic, slot, step):
+def stop_short(floor: Floor, traffic: Traffic, slot: int, step: int) -> None:
     """Make the mover in ``slot`` brake on its path from ``step`` on, and reserve where it stops."""
     mover, law = traffic.movers[slot], traffic.law[0]
     _cut(mover, traffic.pieces)
     mover.phase = DRIVING
     traffic.ghost[0] = mover
     ghost = traffic.ghost[0]
-    foresee(mover, ghost, traffic.pieces, traffic.tracks, law, step)
+    foresee(mover, ghost, traffic.pieces, traffic.tracks, traffic.boxes, law, step)
     put(floor, mover.robot, ghost.x, ghost.y)
 
 
 @kernel
-def stand(floor, traffic, slot, step):
-    """The mover in ``slot`` stands where it is from ``step`` on."""
+def stand(floor: Floor, traffic: Traffic, slot: int, step: int) -> None:
+    """The mover in ``slot`` stands where it is from ``step`` on, and rests there; its body must be
+    parked.
+    """
     mover = traffic.movers[slot]
-    mover.speed = 0.0
+    mover.speed, mover.awake = 0.0, 0
     mover.vx = mover.vy = mover.spin = mover.ux = mover.uy = 0.0
     mover.first, mover.knots = step // traffic.law[0].stride, 1
-    traffic.tracks[slot, 0, 0] = mover.x0 = mover.x1 = mover.x
-    traffic.tracks[slot, 0, 1] = mover.y0 = mover.y1 = mover.y
+    traffic.tracks[slot, 0, 0], traffic.tracks[slot, 0, 1] = mover.x, mover.y
+    bound(mover, traffic.boxes)
     put(floor, mover.robot, mover.x, mover.y)
 
 
 @kernel
-def blocked(traffic, active, slot, step, found):
+def blocked(traffic: Traffic, active: IntArray, slot: int, step: int, found: IntArray) -> int:
     """List in ``found`` who will come too near to the mover in ``slot``; returns how many."""
     mover, law = traffic.movers[slot], traffic.law[0]
     now = step // law.stride
     count = 0
-    for k in range(len(active)):
-        other = traffic.movers[active[k]]
-        if active[k] != slot and other.knots > 0:
-            last = max(mover.first + mover.knots, other.first + other.knots) - 1
-            if conflict(mover, other, traffic.tracks, law, now, last):
-                found[count] = active[k]
-                count += 1
+    for k in range(neighbours(mover, traffic.boxes, active, law.gap, traffic.near)):
+        other = traffic.movers[traffic.near[k]]
+        last = max(mover.first + mover.knots, other.first + other.knots) - 1
+        if conflict(mover, other, traffic.tracks, law, now, last):
+            found[count] = other.slot
+            count += 1
     return count

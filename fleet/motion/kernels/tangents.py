@@ -9,8 +9,14 @@ from __future__ import annotations
 
 import math
 
-from fleet.motion.kernels.geometry import TWO_PI, arc_to_segment, between_segments
-from fleet.motion.kernels.geometry import to_segment, turned, wrapped
+from fleet.motion.kernels.geometry import (
+    TWO_PI,
+    arc_to_segment,
+    between_segments,
+    to_segment,
+    turned,
+    wrapped,
+)
 from protocols.compiled import kernel
 
 GRAZE = 1e-7  # [m], [rad] paths may touch what they go around, and this much more
@@ -40,7 +46,8 @@ def tangent(one, side_one, two, side_two):
 @kernel
 def _before(first, side, middle, half):
     """How far [rad] one can go from ``first`` on to ``side`` before the angles within ``half``
-    of ``middle``."""
+    of ``middle``.
+    """
     if abs(wrapped(first - middle)) < half - GRAZE:
         return 0.0
     sweep = turned(side * (middle - side * half - first))
@@ -93,9 +100,7 @@ def line_is_free(ax, ay, bx, by, circles, count, one, two, sides, side_count):
             if away < circles[k].radius - GRAZE:
                 return False
     for k in range(side_count):
-        away = between_segments(
-            ax, ay, bx, by, sides[k, 0], sides[k, 1], sides[k, 2], sides[k, 3]
-        )
+        away = between_segments(ax, ay, bx, by, sides[k, 0], sides[k, 1], sides[k, 2], sides[k, 3])
         if away < sides[k, 4] - GRAZE:
             return False
     return True

@@ -18,17 +18,25 @@ from protocols.compiled import kernel
 
 
 @kernel
-def _note(mover, tracks, x, y):
-    """Add (x, y) [m] to the track, if there is room."""
-    if mover.knots < tracks.shape[1]:
-        tracks[mover.slot, mover.knots, 0], tracks[mover.slot, mover.knots, 1] = x, y
-    mover.knots += 1
-    mover.x0, mover.x1 = min(mover.x0, x), max(mover.x1, x)
-    mover.y0, mover.y1 = min(mover.y0, y), max(mover.y1, y)
+def bound(mover, boxes):
+    """Start the bounds of the track anew, where the mover is."""
+    boxes[mover.slot, 0] = boxes[mover.slot, 2] = mover.x
+    boxes[mover.slot, 1] = boxes[mover.slot, 3] = mover.y
 
 
 @kernel
-def foresee(mover, ghost, pieces, tracks, law, step):
+def _note(mover, tracks, boxes, x, y):
+    """Add (x, y) [m] to the track, if there is room, and to its bounds."""
+    if mover.knots < tracks.shape[1]:
+        tracks[mover.slot, mover.knots, 0], tracks[mover.slot, mover.knots, 1] = x, y
+    mover.knots += 1
+    box = boxes[mover.slot]
+    box[0], box[1] = min(box[0], x), min(box[1], y)
+    box[2], box[3] = max(box[2], x), max(box[3], y)
+
+
+@kernel
+def foresee(mover, ghost, pieces, tracks, boxes, law, step):
     """Drive a ghost of ``mover`` to its end from ``step`` on, and keep its track.
 
     The mover gets the track's clock, length and bounds; ``ghost``, a record, ends as it will.
@@ -37,19 +45,18 @@ def foresee(mover, ghost, pieces, tracks, law, step):
     mover.first, mover.knots = step // law.stride, 0
     tick = law.stride * law.dt
     gone = (step - mover.first * law.stride) * law.dt
-    mover.x0 = mover.x1 = mover.x
-    mover.y0 = mover.y1 = mover.y
+    bound(mover, boxes)
     ghost.phase = DRIVING
     drive(ghost, pieces, law, tick - gone)
-    coast(ghost, tick - gone)
+    coast(ghost, tick - gone, 1)
     back = gone / (tick - gone)  # the first knot lies in the past
     x, y = mover.x - back * (ghost.x - mover.x), mover.y - back * (ghost.y - mover.y)
-    _note(mover, tracks, x, y)
-    _note(mover, tracks, ghost.x, ghost.y)
+    _note(mover, tracks, boxes, x, y)
+    _note(mover, tracks, boxes, ghost.x, ghost.y)
     while ghost.phase == DRIVING:
         drive(ghost, pieces, law, tick)
-        coast(ghost, tick)
-        _note(mover, tracks, ghost.x, ghost.y)
+        coast(ghost, tick, 1)
+        _note(mover, tracks, boxes, ghost.x, ghost.y)
 
 
 @kernel
@@ -87,15 +94,11 @@ def conflict(one, other, tracks, law, first, last):
     As neither drives faster than cruise speed, ticks are passed over for which they are too far
     apart.
     """
-    if one.x0 - law.gap > other.x1 or other.x0 - law.gap > one.x1:
-        return False
-    if one.y0 - law.gap > other.y1 or other.y0 - law.gap > one.y1:
-        return False
     closing = 2.0 * law.cruise * law.stride * law.dt  # [m] in a tick, at most
     tick = first
     while tick < last:
         dx, dy = _apart(one, other, tracks, tick)
-        skip = int((math.hypot(dx, dy) - law.gap) / closing)
+        skip = int((math.sqrt(dx * dx + dy * dy) - law.gap) / closing)
         if skip < 1:
             ex, ey = _apart(one, other, tracks, tick + 1)
             if _meet(dx, dy, ex, ey, law.gap):
@@ -106,20 +109,36 @@ def conflict(one, other, tracks, law, first, last):
 
 
 @kernel
-def reserve(mover, movers, tracks, active, law):
+def neighbours(mover, boxes, active, gap, near):
+    """List in ``near`` the other slots whose tracks come near that of ``mover``; how many."""
+    count = 0
+    x0, y0 = boxes[mover.slot, 0] - gap, boxes[mover.slot, 1] - gap
+    x1, y1 = boxes[mover.slot, 2] + gap, boxes[mover.slot, 3] + gap
+    for k in range(len(active)):
+        slot = active[k]
+        beside = boxes[slot, 0] > x1 or boxes[slot, 2] < x0
+        beyond = boxes[slot, 1] > y1 or boxes[slot, 3] < y0
+        if not beside and not beyond and slot != mover.slot:
+            near[count] = slot
+            count += 1
+    return count
+
+
+@kernel
+def reserve(mover, movers, tracks, boxes, active, near, law):
     """Put off the track of ``mover`` until it conflicts with no other: by how many ticks.
 
     Ticks count from when it drives until the other has arrived.
     """
     asked = mover.first
+    count = neighbours(mover, boxes, active, law.gap, near)
     k, passed = 0, 0
-    while passed < len(active):
-        other = movers[active[k]]
-        if other.slot != mover.slot:
-            last = other.first + other.knots - 1
-            while conflict(mover, other, tracks, law, mover.first, last):
-                mover.first += 1
-                passed = 0
+    while passed < count:
+        other = movers[near[k]]
+        last = other.first + other.knots - 1
+        while conflict(mover, other, tracks, law, mover.first, last):
+            mover.first += 1
+            passed = 0
         passed += 1
-        k = (k + 1) % len(active)
+        k = (k + 1) % count
     return mover.first - asked
