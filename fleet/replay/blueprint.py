@@ -1,0 +1,234 @@
+"""How a recording is laid out in the viewer: what happens in one tab, the lifetime in the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import rerun as rr
+import rerun.blueprint as rrb
+from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
+
+from fleet.replay import scheme
+from fleet.replay.pages.lifetime import MAP_HEIGHT, MAP_WIDTH
+from fleet.replay.pages.tree import HEIGHT, WIDTH
+from fleet.replay.pages.words import DECIDED, FAILED
+
+RIM = 1.3  # radius of the dark rim around a robot, in its radii
+DARK = list(scheme.GROUND_COLOUR)
+
+
+class Stage(NamedTuple):
+    """One recording to be shown, and what its layout depends on."""
+
+    width: float  # of the floor [m]
+    height: float  # [m]
+    mark: float  # radius that robots are drawn with [m]
+    capacity: float  # of the largest battery [J]
+    name: str = "World"
+    root: str = ""  # before all paths, with a slash after it
+
+    def __call__(self, path: str) -> str:
+        """Where something is in the recording."""
+        return f"/{self.root}{path}"
+
+
+def blueprint(stage: Stage, timeline: str = scheme.SIM_TIME) -> rrb.Blueprint:
+    """Two tabs, with ``timeline`` to scrub by."""
+    return _whole(rrb.Tabs(_replay(stage, timeline), _lifetime(stage), active_tab=0), timeline)
+
+
+def side_by_side(stages: Sequence[Stage], timeline: str = scheme.ROUND) -> rrb.Blueprint:
+    """Several recordings under one cursor: a column each."""
+    now = rrb.Horizontal(
+        *(rrb.Vertical(_world(stage), _card(stage), row_shares=[8, 5]) for stage in stages),
+        name="Replay",
+    )
+    lifetime = rrb.Horizontal(
+        *(
+            rrb.Vertical(_energy_map(stage), _energy(stage), _total_energy(stage), _messages(stage))
+            for stage in stages
+        ),
+        name="Lifetime",
+    )
+    return _whole(rrb.Tabs(now, lifetime, active_tab=0), timeline)
+
+
+def _whole(content: rrb.Container, timeline: str) -> rrb.Blueprint:
+    return rrb.Blueprint(
+        content,
+        rrb.TopPanel(state="hidden"),
+        rrb.BlueprintPanel(state="hidden"),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.TimePanel(state="collapsed", timeline=timeline, play_state="paused"),
+        auto_views=False,
+        auto_layout=False,
+    )
+
+
+def _replay(stage: Stage, timeline: str) -> rrb.Container:
+    guide = rrb.TextDocumentView(origin=stage(scheme.GUIDE), name="How to read")
+    trip = _curves(stage(scheme.TRIP_ENERGY), "Trip [J]")
+    return rrb.Horizontal(
+        rrb.Vertical(_world(stage), _phases(stage, timeline), row_shares=[85, 15]),
+        rrb.Vertical(
+            rrb.Tabs(_card(stage), guide, active_tab=0),
+            rrb.Tabs(_log(stage, decisions=True), _log(stage, decisions=False), active_tab=0),
+            rrb.Tabs(_tree(stage), _messages(stage), trip, active_tab=0),
+            row_shares=[10, 4, 5],
+        ),
+        column_shares=[57, 43],
+        name="Replay",
+    )
+
+
+def _lifetime(stage: Stage) -> rrb.Container:
+    return rrb.Vertical(
+        rrb.Horizontal(
+            _energy_map(stage),
+            rrb.Spatial2DView(
+                origin="/",
+                contents=[f"+ {stage('world/floor')}/**", f"+ {stage(scheme.GROUND_PLANE)}/**"],
+                name="Where robots went",
+                background=DARK,
+                visual_bounds=_bounds(stage),
+            ),
+            rrb.BarChartView(
+                origin=stage(scheme.HISTOGRAM),
+                name="Robots by energy left [J]",
+                plot_legend=rrb.PlotLegend(visible=False),
+                background=rrb.archetypes.PlotBackground(color=DARK, show_grid=True),
+            ),
+            column_shares=[5, 3, 3],
+        ),
+        rrb.Horizontal(_energy(stage), _total_energy(stage), _messages(stage)),
+        rrb.Horizontal(
+            _curves(stage(scheme.LINK_COUNT), "Links", "RightTop"),
+            _curves(stage(scheme.COMPONENTS), "Connected components"),
+            _curves(stage(scheme.ON_AIR), "Robots on the air"),
+        ),
+        row_shares=[6, 4, 3],
+        name="Lifetime",
+    )
+
+
+def _world(stage: Stage) -> rrb.View:
+    nose = rr.Arrows2D.from_fields().visualizer(  # from the body's middle
+        mappings=[
+            VisualizerComponentMapping(
+                target="Arrows2D:origins",
+                source_kind=ComponentSourceKind.SourceComponent,
+                source_component="Points2D:positions",
+            )
+        ]
+    )
+    return rrb.Spatial2DView(
+        origin="/",
+        name=stage.name,
+        contents=[f"+ {stage(scheme.WORLD)}/**"],
+        background=DARK,
+        visual_bounds=_bounds(stage),
+        overrides={
+            stage(scheme.ROBOTS): _with_rim(stage.mark, 20.0),
+            stage(scheme.MOVERS): [*_with_rim(stage.mark, 24.0), nose],
+        },
+    )
+
+
+def _bounds(stage: Stage) -> rrb.VisualBounds2D:
+    side = max(stage.width, stage.height)
+    return rrb.VisualBounds2D(
+        x_range=[-0.06 * side, stage.width + 0.14 * side],
+        y_range=[-stage.height - 0.03 * side, 0.07 * side],
+    )
+
+
+def _with_rim(radius: float, order: float) -> list[rrb.Visualizer]:
+    """Points drawn twice: once larger and dark, so that they stand out from what lies below."""
+    return [
+        rr.Points2D.from_fields(
+            radii=RIM * radius, colors=scheme.RIM_COLOUR, draw_order=order, show_labels=False
+        ).visualizer(),
+        rr.Points2D.from_fields(draw_order=order + 1.0).visualizer(),
+    ]
+
+
+def _phases(stage: Stage, timeline: str) -> rrb.Container:
+    """The bar of phases around the cursor. Its width is in units of one timeline or another."""
+    around = rrb.TimeRangeBoundary.cursor_relative
+    by_msg = rr.TimeRange(start=around(seq=-40), end=around(seq=20))
+    by_time = rr.TimeRange(start=around(seconds=-20.0), end=around(seconds=10.0))
+    return rrb.Tabs(
+        *(
+            rrb.StateTimelineView(
+                origin=stage(scheme.PHASE), name=name, time_view=rrb.TimeAxis(view_range=span)
+            )
+            for name, span in (("Phases, by sim_time", by_time), ("Phases, by msg", by_msg))
+        ),
+        active_tab=0 if timeline == scheme.SIM_TIME else 1,
+    )
+
+
+def _card(stage: Stage) -> rrb.View:
+    return rrb.TextDocumentView(origin=stage(scheme.CARD), name="Event")
+
+
+def _log(stage: Stage, *, decisions: bool) -> rrb.View:
+    hidden = [
+        rrb.encodings.TimelineColumn(timeline, visible=False) for timeline in scheme.TIMELINES
+    ]
+    return rrb.TextLogView(
+        origin=stage(scheme.LOG),
+        name="Decisions" if decisions else "Transmissions",
+        columns=rrb.TextLogColumns(timeline_columns=hidden, text_log_columns=["body"]),
+        rows=rrb.TextLogRows(filter_by_log_level=[DECIDED, FAILED]) if decisions else None,
+        format_options=rrb.TextLogFormat(monospace_body=not decisions),
+    )
+
+
+def _tree(stage: Stage) -> rrb.View:
+    return rrb.GraphView(
+        origin=stage(scheme.TREE),
+        name="Auction",
+        visual_bounds=rrb.VisualBounds2D(
+            x_range=[-0.04 * WIDTH, 1.04 * WIDTH], y_range=[-0.12 * HEIGHT, 1.12 * HEIGHT]
+        ),
+    )
+
+
+def _energy_map(stage: Stage) -> rrb.View:
+    return rrb.Spatial2DView(
+        origin="/",
+        contents=[f"+ {stage(scheme.ENERGY_MAP)}/**"],
+        name="Energy of each robot, round by round",
+        background=DARK,
+        visual_bounds=rrb.VisualBounds2D(
+            x_range=[-0.06 * MAP_WIDTH, 1.02 * MAP_WIDTH],
+            y_range=[-0.03 * MAP_HEIGHT, 1.16 * MAP_HEIGHT],
+        ),
+    )
+
+
+def _energy(stage: Stage) -> rrb.View:
+    name = "Energy of a robot [J]"
+    return _curves(stage(scheme.FLEET_ENERGY), name, "RightTop", (0.0, stage.capacity))
+
+
+def _total_energy(stage: Stage) -> rrb.View:
+    return _curves(stage(scheme.TOTAL_ENERGY), "Energy of all trips so far [J]")
+
+
+def _messages(stage: Stage) -> rrb.View:
+    return _curves(stage(scheme.FLEET_MESSAGES), "Messages an event", "RightTop")
+
+
+def _curves(
+    path: str, name: str, legend: str = "LeftTop", span: tuple[float, float] | None = None
+) -> rrb.View:
+    return rrb.TimeSeriesView(
+        origin=path,
+        name=name,
+        background=rrb.archetypes.PlotBackground(color=DARK, show_grid=True),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.auto(legend)),
+        axis_y=None if span is None else rrb.ScalarAxis(range=span),
+    )

@@ -1,0 +1,80 @@
+"""What a run tells the process that writes its recording, and how it gets there.
+
+The run must not wait for its recording, so another process draws it. What crosses the pipe
+is small: where everybody started, then for every few rounds what happened in order, the
+transmissions, and the poses of those under way. The other end works out the rest.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterator, Sequence
+from typing import IO, Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from protocols.messages import Heard, Point, RobotId
+
+
+class Told(NamedTuple):
+    """One transmission, flat."""
+
+    number: int
+    time: float  # [s]
+    event: int
+    kind: str
+    sender: RobotId
+    receiver: RobotId | None
+    cost: float | None  # of the bid that it carries
+    bidder: RobotId | None  # whose bid that is
+    heard: Heard
+    attempts: int  # frames it took
+
+
+Entry: TypeAlias = tuple[Any, ...]
+"""A happening: its name, the transmissions made before it, and what the teller is told."""
+
+
+class Scene(NamedTuple):
+    """How a run starts."""
+
+    width: float  # [m]
+    height: float  # [m]
+    hole: list[Point] | None  # outline [m]
+    obstacles: list[list[Point]]  # outlines [m]
+    positions: list[Point]  # [m]
+    energies: list[float]  # [J]
+    capacities: list[float]  # [J]
+    radius: float  # of a robot [m]
+    per_metre: float  # Eq. (1) at cruise speed [J/m]
+    radio_range: float  # [m]
+    search_radius: float  # [m]
+    graph: str
+    protocol: str
+    motion: str
+    world: str
+    seed: int
+
+
+class Batch(NamedTuple):
+    """Some rounds of a run."""
+
+    entries: list[Entry]
+    told: tuple[Sequence[Any], ...]  # the columns of Told; () if there are none
+    samples: NDArray[np.float64]  # (k, 6), as fleet.motion.SAMPLE_FIELDS
+
+
+def send(pipe: IO[bytes], tag: str, *content: Any) -> None:
+    """Write one frame."""
+    pickle.dump((tag, *content), pipe, protocol=5)
+    pipe.flush()
+
+
+def receive(pipe: IO[bytes]) -> Iterator[tuple[Any, ...]]:
+    """Frames until the other end closes the pipe, or dies in the middle of one."""
+    while True:
+        try:
+            yield pickle.load(pipe)  # noqa: S301 - written by our own parent process
+        except (EOFError, pickle.UnpicklingError):
+            return

@@ -1,0 +1,139 @@
+"""The robots: at rest, under way, and out of energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from fleet.replay.columns import Moment, colours, column, own, pairs, reals, segments, texts
+from fleet.replay.pages.frames import Frames, Poses, frames, joined, still
+from fleet.replay.scheme import (
+    DEAD,
+    DEAD_COLOUR,
+    MOVERS,
+    ROBOT_ENERGY,
+    ROBOTS,
+)
+from fleet.replay.shades import shade
+from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.stream import Stream
+from protocols.messages import RobotId
+
+Floats = NDArray[np.float32]
+
+NOSE = 1.9  # length of a mover's pointer, in its radii
+
+
+class Bodies(Page):
+    """Those at rest change only when somebody sets off or arrives; movers have their own rows."""
+
+    def __init__(self) -> None:
+        self._rest: list[tuple[Moment, Floats, Floats, NDArray[np.bool_]]] = []
+        self._moving: list[Frames] = []
+        self._names: list[tuple[Moment, tuple[int, ...]]] = []
+        self._dead: list[tuple[Moment, NDArray[np.float64]]] = []
+        self._poses: Poses = {}
+
+    def started(self, story: Story) -> None:
+        """The first row."""
+        self._story = story
+        self._on_air = np.ones(story.n, bool)
+        self._at_rest(Moment(0.0, 0, 0))
+
+    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """A moment to see who has fallen silent, or is heard again."""
+        if (self._on_air != self._story.on_air).any():
+            self._at_rest(at)
+
+    def departed(self, at: Moment, robot: RobotId) -> None:
+        """One leaves the others."""
+        story = self._story
+        (x, y), (to_x, to_y) = story.at(robot), story.under_way[robot].site
+        heading = float(np.arctan2(to_y - y, to_x - x))
+        self._poses[robot] = (robot, at.time, x, y, heading, float(story.energies[robot]))
+        self._at_rest(at)
+        self._stand(at)
+
+    def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
+        """Movers where they were at each time."""
+        self._moving.append(frames(samples, self._poses, at))
+
+    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+        """One is back among the others."""
+        del self._poses[trip.robot]
+        self._at_rest(at)
+        self._stand(at)
+
+    def send(self, stream: Stream) -> None:
+        """Those at rest, those under way, the dead."""
+        capacity = self._story.capacity
+        if self._rest:
+            when, positions, energies, on_air = zip(*self._rest, strict=True)
+            energy = np.concatenate(energies)
+            heard = np.concatenate(on_air)
+            paint = np.where(heard, shade(energy, capacity), np.uint32(DEAD_COLOUR))
+            count = np.full(len(when), self._story.n)
+            stream.rows(
+                ROBOTS,
+                when,
+                column(rr.Points2D.descriptor_positions(), pairs(np.concatenate(positions)), count),
+                column(rr.Points2D.descriptor_colors(), colours(paint), count),
+                column(own("Robot", ROBOT_ENERGY), reals(energy), count),
+            )
+        if self._moving:
+            self._send_movers(stream, capacity)
+        if self._dead:
+            when, crosses = zip(*self._dead, strict=True)
+            stream.rows(
+                DEAD,
+                when,
+                column(
+                    rr.LineStrips2D.descriptor_strips(),
+                    segments(np.concatenate(crosses)),
+                    [len(cross) for cross in crosses],
+                ),
+            )
+        self._rest, self._moving, self._names, self._dead = [], [], [], []
+
+    def _stand(self, at: Moment) -> None:
+        """A frame of the movers when there is one more of them, or one less."""
+        self._moving.append(still(self._poses, at))
+        self._names.append((at, tuple(self._poses)))
+
+    def _at_rest(self, at: Moment) -> None:
+        story = self._story
+        positions = story.positions.astype(np.float32)
+        positions[list(story.under_way)] = np.nan
+        on_air = story.on_air.copy()
+        self._rest.append((at, positions, story.energies.astype(np.float32), on_air))
+        if (on_air != self._on_air).any():
+            self._on_air = on_air
+            dead = np.flatnonzero(~on_air)
+            arm = 0.9 * story.mark * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
+            crosses = story.positions[dead, None, None] + arm
+            self._dead.append((at, crosses.reshape(-1, 2, 2)))
+
+    def _send_movers(self, stream: Stream, capacity: float) -> None:
+        when, lengths, poses = joined(self._moving)
+        heading, reach = poses[:, 4], NOSE * self._story.mark
+        noses = reach * np.column_stack([np.cos(heading), np.sin(heading)])
+        stream.rows(
+            MOVERS,
+            when,
+            column(rr.Points2D.descriptor_positions(), pairs(poses[:, 2:4]), lengths),
+            column(rr.Points2D.descriptor_colors(), colours(shade(poses[:, 5], capacity)), lengths),
+            column(rr.Arrows2D.descriptor_vectors(), pairs(noses), lengths),
+        )
+        if not self._names:
+            return
+        changes, robots = zip(*self._names, strict=True)
+        stream.rows(
+            MOVERS,
+            changes,
+            column(
+                rr.Points2D.descriptor_labels(),
+                texts([f"r{robot}" for row in robots for robot in row]),
+                [len(row) for row in robots],
+            ),
+        )

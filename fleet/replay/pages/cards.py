@@ -1,0 +1,160 @@
+"""A card for every round: who was asked, who bid what, who went and why, and what it cost."""
+
+from __future__ import annotations
+
+from math import dist
+
+import rerun as rr
+
+from fleet.replay.columns import Moment, column, texts
+from fleet.replay.journal import Told
+from fleet.replay.scheme import CARD
+from fleet.replay.story import Conversation, Page, Story, TripEnd
+from fleet.replay.stream import Stream
+from protocols.messages import RobotId
+
+MANY_BIDS = 5  # shown
+MANY_ASKED = 12  # named
+
+
+class Cards(Page):
+    """The card of the latest round; it grows as the round goes on."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[Moment, str]] = []
+        self._told: dict[int, list[str]] = {}  # by event: sentences about the search
+        self._bids: dict[int, str] = {}  # by event: the table
+
+    def started(self, story: Story) -> None:
+        """A card to begin with."""
+        self._story = story
+        scene = story.scene
+        self._rows.append(
+            (
+                Moment(0.0, 0, 0),
+                (
+                    f"## {story.n} robots, {scene.protocol}\n\n"
+                    f"World `{scene.world}`, motion `{scene.motion}`, seed {scene.seed}.\n\n"
+                    "Nothing has happened yet. *How to read* explains the picture."
+                ),
+            )
+        )
+
+    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """What has happened, and who knows."""
+        story = self._story
+        x, y = story.sites[event]
+        away = dist(story.at(source), story.sites[event])
+        where = f"At **({x:.2f}, {y:.2f}) m**."
+        self._told[event] = [f"{where} Collector **r{source}**, {away:.2f} m away, is told of it."]
+        self._draw(at, event, f"Event {event + 1}")
+
+    def told(self, at: Moment, line: Told) -> None:
+        """The search is over when the first call is made."""
+        talk = self._story.talks.get(line.event)
+        if line.kind == "call" and talk is not None and talk.calls == 1:
+            asked = f"**r{line.sender}** asks {_names(line.heard)} for bids."
+            self._told[line.event].append(self._search(talk, line.sender))
+            self._draw(at, line.event, f"Event {line.event + 1}", asked)
+
+    def awarded(
+        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
+        bids: list[tuple[float, RobotId]],
+    ) -> None:  # fmt: skip
+        """Who bid what, and who goes."""
+        story, talk, told = self._story, self._story.talks[event], self._told[event]
+        if not talk.calls:
+            told.append(self._search(talk, auctioneer))
+        asked = tuple(talk.parents)
+        if asked:
+            told.append(f"**r{auctioneer}** asked {_names(asked)}.")
+        if winner is None:
+            told.append("**Nobody can go**: all who were asked believe that they lack the energy.")
+            self._draw(at, event, f"Event {event + 1}: nobody can go")
+            return
+        self._bids[event] = self._table(talk, winner, bids)
+        need, held = story.foreseen(winner, talk.site), float(story.energies[winner])
+        self._draw(
+            at,
+            event,
+            f"Event {event + 1}: r{winner} goes",
+            self._bids[event],
+            f"Eq. (1) foresees **{need:.1f} J** of the {held:.1f} J that r{winner} holds,"
+            f" for {dist(story.at(winner), talk.site):.2f} m.",
+        )
+
+    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+        """What it came to."""
+        straight = dist(trip.origin, trip.site)
+        foreseen = self._story.scene.per_metre * straight
+        over = f" ({100.0 * (trip.energy / foreseen - 1.0):+.1f} %)" if foreseen > 0.0 else ""
+        outcome = (
+            f"| r{trip.robot} | way | energy | time | left |\n|---|---|---|---|---|\n"
+            f"| Eq. (1), straight | {straight:.2f} m | {foreseen:.1f} J | | |\n"
+            f"| driven | {trip.path:.2f} m | **{trip.energy:.1f} J**{over}"
+            f" | {trip.ended - trip.departed:.1f} s"
+            f" | {self._story.energies[trip.robot]:.1f} J |"
+        )
+        verb = "arrived" if trip.outcome == "arrived" else f"did not arrive: {trip.outcome}"
+        title = f"Event {event + 1}: r{trip.robot} {verb}"
+        self._draw(at, event, title, self._bids[event], outcome)
+
+    def broken(self, at: Moment, event: int, reason: str) -> None:
+        """Nothing came of it."""
+        self._draw(
+            at, event, f"Event {event + 1}: nothing came of it", f"The talk broke off: {reason}."
+        )
+
+    def over(self, at: Moment, event: int, outcome: str) -> None:
+        """What was not served; and nothing more will be said of it."""
+        if outcome != "served" and event in self._told:
+            self._draw(at, event, f"Event {event + 1}: {outcome}")
+        self._told.pop(event, None)
+        self._bids.pop(event, None)
+
+    def send(self, stream: Stream) -> None:
+        """The cards."""
+        if self._rows:
+            when, cards = zip(*self._rows, strict=True)
+            media = ["text/markdown"] * len(cards)
+            stream.rows(
+                CARD,
+                when,
+                column(rr.TextDocument.descriptor_text(), texts(cards)),
+                column(rr.TextDocument.descriptor_media_type(), texts(media)),
+            )
+        self._rows = []
+
+    def _draw(self, at: Moment, event: int, title: str, *more: str) -> None:
+        self._rows.append((at, "\n\n".join([f"## {title}", " ".join(self._told[event]), *more])))
+
+    def _search(self, talk: Conversation, found: RobotId) -> str:
+        greedy, face = talk.count("route-greedy"), talk.count("route-face")
+        away = dist(self._story.at(found), talk.site)
+        if not greedy + face:
+            return f"It is nearest itself, **r{found}**: no hops."
+        hops = f"{greedy + face} hop{'s' * (greedy + face > 1)}"
+        how = f" ({greedy} greedy, {face} face)" if face else ", all greedy"
+        return f"The search took **{hops}**{how} to **r{found}**, {away:.2f} m from the event."
+
+    def _table(self, talk: Conversation, winner: RobotId, bids: list[tuple[float, RobotId]]) -> str:
+        story = self._story
+        title = f"{len(bids)} bids, lowest wins" if len(bids) > 1 else "the only bid"
+        rows = [f"| {title} | cost | way | holds | would be left |", "|---|---|---|---|---|"]
+        for cost, robot in sorted(bids)[:MANY_BIDS]:
+            held, need = float(story.energies[robot]), story.foreseen(robot, talk.site)
+            name = f"**r{robot}** goes" if robot == winner else f"r{robot}"
+            way = dist(story.at(robot), talk.site)
+            rows.append(
+                f"| {name} | {cost:.2f} | {way:.2f} m | {held:.1f} J | {held - need:.1f} J |"
+            )
+        if len(bids) > MANY_BIDS:
+            rows.append(f"| and {len(bids) - MANY_BIDS} more | | | | |")
+        return "\n".join(rows)
+
+
+def _names(robots: tuple[RobotId, ...]) -> str:
+    """Some robots by name."""
+    named = ", ".join(f"r{robot}" for robot in robots[:MANY_ASKED])
+    more = len(robots) - MANY_ASKED
+    return f"{len(robots)} neighbours ({named}{f' and {more} more' if more > 0 else ''})"

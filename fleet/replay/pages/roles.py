@@ -1,0 +1,144 @@
+"""The event, how near to it the search ends, and who is who: collector, auctioneer, winner."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from fleet.replay.columns import Moment, colours, column, pairs, texts
+from fleet.replay.journal import Told
+from fleet.replay.pages.labels import Labels
+from fleet.replay.scheme import (
+    AUCTIONEER_COLOUR,
+    EVENT,
+    EVENT_COLOUR,
+    NAMES,
+    SEARCH,
+    SOURCE_COLOUR,
+    WINNER_TEXT,
+)
+from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.stream import Stream
+from protocols.messages import Point, RobotId
+
+TARGET = 2.3  # radius of the ring around an event, in radii of a robot
+MANY_NAMES = 16  # at a time
+COLOURS = {
+    "collector": SOURCE_COLOUR,
+    "auctioneer": AUCTIONEER_COLOUR,
+    "winner": WINNER_TEXT,
+}
+
+
+class Roles(Page):
+    """Names of those who take part in the latest conversation, and of all events that are open."""
+
+    def __init__(self) -> None:
+        self._event_rows: list[tuple[Moment, list[Point]]] = []
+        self._name_rows: list[tuple[Moment, list[tuple[str, int, Point]]]] = []
+        self._held: dict[RobotId, list[str]] = {}
+        self._names: dict[str, tuple[str, int, Point]] = {}  # text, colour, anchor, by whose it is
+        self._event = -1
+
+    def started(self, story: Story) -> None:
+        """Nothing to name."""
+        self._story = story
+        self._labels = Labels((story.scene.width, story.scene.height))
+
+    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """The event and who is told of it."""
+        self._event = event
+        self._held, self._names = {}, {}
+        self._labels.clear()
+        sites = self._story.sites
+        for site in sites.values():
+            self._labels.keep_off(site)
+        self._name(f"event {event + 1}", sites[event], EVENT_COLOUR)
+        self._assume(source, "collector")
+        for other in [e for e in sites if e != event][:MANY_NAMES]:
+            self._name(f"event {other + 1}", sites[other], EVENT_COLOUR)
+        self._draw_events(at)
+        self._draw_names(at)
+
+    def told(self, at: Moment, line: Told) -> None:
+        """The first to call is the auctioneer."""
+        if line.kind == "call" and line.event == self._event:
+            self._assume(line.sender, "auctioneer", once=True)
+            self._draw_names(at)
+
+    def awarded(
+        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
+        bids: list[tuple[float, RobotId]],
+    ) -> None:  # fmt: skip
+        """The winner, and where the search ended if nobody called."""
+        if event == self._event:
+            self._assume(auctioneer, "auctioneer", once=True)
+            if winner is not None:
+                self._assume(winner, "winner")
+            self._draw_names(at)
+
+    def departed(self, at: Moment, robot: RobotId) -> None:
+        """A mover carries its own name."""
+        if self._held.pop(robot, None):
+            del self._names[f"r{robot}"]
+            self._draw_names(at)
+
+    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+        """The one who went, where it stands now."""
+        if event == self._event:
+            self._assume(trip.robot, "winner")
+            self._draw_names(at)
+
+    def over(self, at: Moment, event: int, outcome: str) -> None:
+        """Off the map; but the last one stays until the next is raised."""
+        if self._story.sites:
+            self._draw_events(at)
+
+    def send(self, stream: Stream) -> None:
+        """Events with their circles, and names."""
+        if self._event_rows:
+            when, sites = zip(*self._event_rows, strict=True)
+            counts = [len(row) for row in sites]
+            centres = pairs(np.array([site for row in sites for site in row]).reshape(-1, 2))
+            stream.rows(
+                EVENT,
+                when,
+                column(rr.Points2D.descriptor_positions(), centres, counts),
+                column(rr.Ellipses2D.descriptor_centers(), centres, counts),
+            )
+            if self._story.scene.search_radius > 0.0:
+                stream.rows(
+                    SEARCH, when, column(rr.Ellipses2D.descriptor_centers(), centres, counts)
+                )
+        if self._name_rows:
+            when, rows = zip(*self._name_rows, strict=True)
+            counts = [len(row) for row in rows]
+            words, paint, places = zip(*(name for row in rows for name in row), strict=True)
+            stream.rows(
+                NAMES,
+                when,
+                column(rr.Points2D.descriptor_positions(), pairs(places), counts),
+                column(rr.Points2D.descriptor_labels(), texts(words), counts),
+                column(rr.Points2D.descriptor_colors(), colours(paint), counts),
+            )
+        self._event_rows, self._name_rows = [], []
+
+    def _assume(self, robot: RobotId, role: str, *, once: bool = False) -> None:
+        """The robot has a role; one that can be had ``once`` is the first one's to keep."""
+        if once and any(role in held for held in self._held.values()):
+            return
+        held = self._held.setdefault(robot, [])
+        if role not in held:
+            held.append(role)
+            text = f"{', '.join(held)} r{robot}"
+            self._name(f"r{robot}", self._story.at(robot), COLOURS[role], text)
+
+    def _name(self, whose: str, place: Point, colour: int, text: str = "") -> None:
+        text = text or whose
+        self._names[whose] = text, colour, self._labels.place(*place, len(text))
+
+    def _draw_events(self, at: Moment) -> None:
+        self._event_rows.append((at, list(self._story.sites.values())))
+
+    def _draw_names(self, at: Moment) -> None:
+        self._name_rows.append((at, list(self._names.values())))

@@ -1,0 +1,118 @@
+"""Where a robot was sent, along the straight line that Eq. (1) charges, and where it drove."""
+
+from __future__ import annotations
+
+from math import dist
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from fleet.replay.columns import Moment, column, segments, strips
+from fleet.replay.scheme import DRIVEN, STRAIGHT
+from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.stream import Stream
+from protocols.messages import RobotId
+
+TRAIL_INTERVAL = 0.25  # [s] between two corners of a driven path
+DASH = 0.12  # [m]
+
+FloatArray = NDArray[np.float64]
+
+
+class Trips(Page):
+    """The trips under way, and those ended since the latest event."""
+
+    def __init__(self) -> None:
+        self._dashes: dict[RobotId, FloatArray] = {}  # (d, 2, 2) [m]
+        self._driven: dict[RobotId, FloatArray] = {}  # (c, 2) [m]
+        self._ended: set[RobotId] = set()
+        self._straight_rows: list[tuple[Moment, list[FloatArray]]] = []
+        self._driven_rows: list[tuple[Moment, list[FloatArray]]] = []
+
+    def started(self, story: Story) -> None:
+        """Nobody is under way."""
+        self._story = story
+
+    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """Trips that have ended are history."""
+        for robot in self._ended:
+            del self._dashes[robot], self._driven[robot]
+        if self._ended:
+            self._ended.clear()
+            self._draw_straight(at)
+            self._draw_driven(at)
+
+    def departed(self, at: Moment, robot: RobotId) -> None:
+        """The straight line is known."""
+        trip = self._story.under_way[robot]
+        self._ended.discard(robot)
+        self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._story.mark / 0.1)
+        self._driven[robot] = np.array([trip.origin])
+        self._draw_straight(at)
+        self._draw_driven(at)
+
+    def moved(self, at: Moment, samples: FloatArray) -> None:
+        """The driven path grows."""
+        for robot, trip in self._story.under_way.items():
+            mine = samples[samples[:, 0] == robot]
+            if not len(mine):
+                continue
+            step = np.floor((mine[:, 1] - trip.departed) / TRAIL_INTERVAL)
+            corners = np.flatnonzero(np.diff(step, append=np.inf))
+            drawn = self._driven[robot]
+            path = np.concatenate([drawn, mine[corners, 2:4]])
+            self._driven[robot] = path
+            for k, time in enumerate(mine[corners, 1].tolist(), len(drawn) + 1):
+                others = [p for r, p in self._driven.items() if r != robot]
+                self._driven_rows.append((at._replace(time=time), [*others, path[:k]]))
+
+    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+        """It stays in sight until the next event."""
+        self._ended.add(trip.robot)
+
+    def send(self, stream: Stream) -> None:
+        """Dashes and trails."""
+        if self._straight_rows:
+            when, rows = zip(*self._straight_rows, strict=True)
+            stream.rows(
+                STRAIGHT,
+                when,
+                column(
+                    rr.LineStrips2D.descriptor_strips(),
+                    segments(
+                        np.concatenate([np.empty((0, 2, 2)), *(d for row in rows for d in row)])
+                    ),
+                    [sum(map(len, row)) for row in rows],
+                ),
+            )
+        if self._driven_rows:
+            when, rows = zip(*self._driven_rows, strict=True)
+            trails = [trail for row in rows for trail in row]
+            stream.rows(
+                DRIVEN,
+                when,
+                column(
+                    rr.LineStrips2D.descriptor_strips(),
+                    strips(
+                        np.concatenate([np.empty((0, 2)), *trails]),
+                        [len(trail) for trail in trails],
+                    ),
+                    [len(row) for row in rows],
+                ),
+            )
+        self._straight_rows, self._driven_rows = [], []
+
+    def _draw_straight(self, at: Moment) -> None:
+        self._straight_rows.append((at, list(self._dashes.values())))
+
+    def _draw_driven(self, at: Moment) -> None:
+        self._driven_rows.append((at, list(self._driven.values())))
+
+
+def dashes(origin: tuple[float, float], site: tuple[float, float], dash: float) -> FloatArray:
+    """A broken line (d, 2, 2) [m] of dashes of about that length, with gaps between."""
+    count = max(1, round(dist(origin, site) / (2.0 * dash)))
+    ends = np.linspace(0.0, 1.0, 2 * count + 1)[: 2 * count].reshape(-1, 2, 1)
+    start = np.array(origin)
+    return np.asarray(start + ends * (np.array(site) - start))

@@ -1,0 +1,285 @@
+"""An observer that records the run. It only takes notes; another process turns them into a file."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from array import array
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.motion import SAMPLE_FIELDS, Trip
+from fleet.observer import Observer, Sent
+from fleet.replay.journal import Entry, Scene, send
+from protocols.messages import Award, Event, RobotId
+
+if TYPE_CHECKING:
+    from fleet.energy import Battery
+    from fleet.results import Summary
+    from fleet.simulation import Fleet
+
+MANY_SAMPLES = 50_000  # poses that are held back at most
+MANY_SENT = 50_000  # transmissions that are held back at most
+NO_SAMPLES = np.empty((0, len(SAMPLE_FIELDS)))
+PIPE = 1 << 20  # [bytes] that the writer may lag behind before the run waits
+LIVE_PAUSE = 0.1  # [s] between looks of a live viewer
+
+
+class RerunRecorder(Observer):
+    """Records a run as a Rerun recording (.rrd), for a live viewer, or for both at once.
+
+    If the run is killed, the file lacks at most the last ``flush_rounds`` rounds; if it breaks
+    off in any other way, nothing.
+
+    Args:
+        path: the file to write; None: none.
+        key: names the run; recordings of one key are the same run.
+        properties: what the run was made from, kept with the recording: plain values,
+            nested mappings too.
+        live: True opens a viewer and streams to it; an address, such as
+            "rerun+http://127.0.0.1:9876/proxy", streams to the viewer that listens there.
+        flush_rounds: rounds between two times that the notes are handed on.
+        sample_interval: simulated time between recorded poses of a moving robot [s].
+        strict: data that Rerun would warn of ends the recording.
+
+    Raises:
+        ValueError: there is nowhere to record to, or the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: Path | None,
+        *,
+        key: str,
+        properties: Mapping[str, Any],
+        live: bool | str = False,
+        flush_rounds: int = 25,
+        sample_interval: float = 0.05,
+        strict: bool = False,
+    ) -> None:
+        if path is None and not live:
+            raise ValueError("neither a file nor a viewer to record to; expected at least one")
+        if flush_rounds < 1:
+            raise ValueError(f"flush_rounds is {flush_rounds}; expected 1 or more")
+        if not sample_interval > 0.0:
+            raise ValueError(f"sample_interval is {sample_interval} s; expected more than 0")
+        if path is not None:
+            _check_writable(path)
+        self.path = path
+        self.sample_interval = sample_interval
+        self._flush_rounds = flush_rounds
+        self._live = bool(live)
+        self._batteries: list[Battery] = []
+        self._all_drain = True  # also robots that stand still
+        self._entries: list[Entry] = []
+        self._sent: list[Sent] = []
+        self._samples: list[NDArray[np.float64]] = []
+        self._sampled = 0
+        self._told = 0  # transmissions of the run so far, up to the last flush
+        self._latest = -1  # id of the latest event
+        self._rounds = 0  # events since the last flush
+        self._flushed = time.monotonic()
+        if live is True:
+            from fleet.replay.view import spawn_viewer
+
+            live = spawn_viewer()
+        self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - until closed()
+        self._writer = _start_writer(self._complaints)
+        self._tell(
+            "open", None if path is None else str(path.absolute()), live or None, key,
+            _plain(properties), strict,
+        )  # fmt: skip
+
+    def run_started(self, fleet: Fleet) -> None:
+        """Tell the writer what the world looks like."""
+        self._all_drain = bool(fleet.spec.extra.idle or fleet.spec.extra.transmission)
+        self._batteries = [robot.battery for robot in fleet.robots]
+        hole, labels, spec = fleet.arena.hole, fleet.labels, fleet.spec
+        scene = Scene(
+            width=fleet.arena.width,
+            height=fleet.arena.height,
+            hole=None if hole is None else hole.outline().tolist(),
+            obstacles=[shape.outline().tolist() for shape in fleet.arena.obstacles],
+            positions=[robot.position for robot in fleet.robots],
+            energies=[battery.charge for battery in self._batteries],
+            capacities=[battery.capacity for battery in self._batteries],
+            radius=spec.radius,
+            per_metre=spec.power.per_metre(spec.cruise),
+            radio_range=fleet.topology.radio_range,
+            search_radius=labels.search_radius,
+            graph=fleet.topology.graph,
+            protocol=labels.protocol,
+            motion=labels.motion,
+            world=labels.world,
+            seed=labels.seed,
+        )
+        self._tell("scene", scene)
+
+    def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
+        """Note it."""
+        self._note("air", time, list(on_air))
+
+    def event_raised(self, event: Event, source: RobotId, time: float) -> None:
+        """Note it; a new event is also the moment to send what the last rounds left."""
+        if event.id != self._latest:
+            self._latest = event.id
+            if self._rounds == self._flush_rounds or self._due():
+                self.flush()
+            self._rounds += 1
+        self._note("raised", time, event.id, event.position, source)
+
+    def sent(self, sent: Sent) -> None:
+        """Note it."""
+        self._sent.append(sent)
+
+    def awarded(self, event: Event, award: Award, time: float) -> None:
+        """Note it."""
+        bids = [(cost, robot) for cost, robot in award.bids]
+        self._note("awarded", time, event.id, award.winner, award.auctioneer, bids)
+        if len(self._sent) > MANY_SENT:
+            self.flush()
+
+    def broken_off(self, event: Event, reason: str, time: float) -> None:
+        """Note it."""
+        self._note("broken", time, event.id, reason)
+
+    def event_closed(self, event: Event, outcome: str, time: float) -> None:
+        """Note it."""
+        self._note("over", time, event.id, outcome)
+
+    def departed(self, event: Event, robot: RobotId, time: float) -> None:
+        """Note it."""
+        self._note("departed", time, event.id, robot, event.position)
+
+    def moved(self, samples: NDArray[np.float64]) -> None:
+        """Note the poses; they are the observer's own."""
+        if len(samples):
+            self._samples.append(samples)
+            self._note("moved", len(samples))
+            self._sampled += len(samples)
+            if self._sampled > MANY_SAMPLES:
+                self.flush()
+
+    def trip_ended(self, event: Event, trip: Trip) -> None:
+        """Note the trip, and what batteries hold now: of all that can have been drained."""
+        drained = self._batteries if self._all_drain else [self._batteries[trip.robot]]
+        self._note(
+            "ended",
+            event.id,
+            (
+                trip.robot, trip.outcome, trip.origin, trip.site, trip.end,
+                trip.departed, trip.ended, trip.path, trip.energy,
+            ),
+            array("d", [battery.charge for battery in drained]).tobytes(),
+        )  # fmt: skip
+
+    def run_ended(self, summary: Summary) -> None:
+        """Keep the summary with the recording, but for what differs from run to run."""
+        self.flush()
+        figures = summary.as_dict()
+        del figures["wall_time"]
+        self._tell("summary", _plain(figures))
+
+    def closed(self) -> None:
+        """Hand over the last notes and wait until the file is complete.
+
+        Raises:
+            RuntimeError: the recording could not be written.
+        """
+        if self._writer.poll() is None:
+            self.flush()
+        assert self._writer.stdin is not None
+        with suppress(BrokenPipeError):  # it has ended already; why is told below
+            self._writer.stdin.close()
+        with self._complaints:
+            if self._writer.wait() != 0:
+                raise self._failure()
+
+    def flush(self) -> None:
+        """Send the notes taken since the last time."""
+        if not self._entries and not self._sent:
+            return
+        told: tuple[Any, ...] = ()
+        if self._sent:  # columns of plain values pass through the pipe much quicker than rows
+            numbers, times, events, transmissions, heard, attempts = zip(*self._sent, strict=True)
+            kinds, senders, receivers, bids = zip(*transmissions, strict=True)
+            costs = [None if bid is None else bid[0] for bid in bids]
+            bidders = [None if bid is None else bid[1] for bid in bids]
+            told = (
+                numbers, times, events, kinds, senders, receivers, costs, bidders, heard, attempts,
+            )  # fmt: skip
+        samples = np.concatenate(self._samples) if self._samples else NO_SAMPLES
+        self._tell("batch", self._entries, told, samples)
+        self._told += len(self._sent)
+        self._entries, self._sent, self._samples = [], [], []
+        self._sampled = self._rounds = 0
+        self._flushed = time.monotonic()
+
+    def _note(self, name: str, *what: Any) -> None:
+        self._entries.append((name, self._told + len(self._sent), *what))
+
+    def _due(self) -> bool:
+        """Whether a live viewer waits for news."""
+        return self._live and time.monotonic() - self._flushed > LIVE_PAUSE
+
+    def _tell(self, tag: str, *content: Any) -> None:
+        assert self._writer.stdin is not None
+        try:
+            send(self._writer.stdin, tag, *content)
+        except BrokenPipeError:
+            self._writer.wait()
+            raise self._failure() from None  # closed() is still to come
+
+    def _failure(self) -> RuntimeError:
+        """What the writer died of; all that it said is a note of the error."""
+        self._complaints.seek(0)
+        said = self._complaints.read().decode(errors="replace").strip()
+        target = self.path if self.path is not None else "for the viewer"
+        reason = said.splitlines()[-1] if said else f"exit code {self._writer.returncode}"
+        error = RuntimeError(f"the recording {target} broke off: {reason}")
+        error.add_note(said)
+        return error
+
+
+def _start_writer(complaints: IO[bytes]) -> subprocess.Popen[bytes]:
+    """The process that draws. It outlives an interrupted run for as long as it has work."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path or "." for path in sys.path)}
+    return subprocess.Popen(
+        [sys.executable, "-m", "fleet.replay.writer"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=complaints,
+        env=environment,
+        pipesize=PIPE,
+        start_new_session=True,  # Ctrl-C is for the run; the writer finishes the file
+    )
+
+
+def _check_writable(path: Path) -> None:
+    try:
+        path.open("wb").close()
+    except OSError as error:
+        raise ValueError(f"cannot record to {path}: {error.strerror}") from error
+
+
+def _plain(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested mappings as one level, ``robot_radius`` for ``robot.radius``: Rerun takes the two
+    for the same name and refuses a file that has both. Values that are not plain become text.
+    """
+    flat: dict[str, Any] = {}
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            flat |= _plain(value, f"{prefix}{key}_")
+        elif isinstance(value, bool | int | float | str):
+            flat[f"{prefix}{key}"] = value
+        elif value is not None:
+            flat[f"{prefix}{key}"] = str(value)
+    return flat

@@ -1,0 +1,240 @@
+"""What does not change: the floor and what stands on it, how everything looks, how to read it."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import rerun as rr
+from PIL import Image, ImageDraw
+
+from fleet.replay import scheme
+from fleet.replay.guide import guide
+from fleet.replay.journal import Scene
+from fleet.replay.pages.counts import describe_counts
+from fleet.replay.pages.labels import HANG
+from fleet.replay.pages.lifetime import describe_lifetime
+from fleet.replay.pages.roles import TARGET
+from fleet.replay.pages.words import describe_phases
+from fleet.replay.shades import TABLE
+from fleet.replay.story import Story
+from fleet.replay.stream import Stream
+from protocols.messages import Point
+
+RING = 1.75  # radius of the ring around a robot, in its radii
+PIXELS = 1200  # of the longer side of the picture of the floor
+
+FLOOR = (16, 21, 29)
+GRID = (24, 31, 42)
+EMPTY = scheme.GROUND_COLOUR
+HATCH = (38, 45, 57)
+BLOCK = (52, 60, 74)
+
+
+def describe(stream: Stream, scene: Scene, key: str, properties: Mapping[str, Any]) -> None:
+    """Say what this is a recording of."""
+    stream.name(f"{scene.protocol} · {scene.world} · {scene.motion} · seed {scene.seed} · {key}")
+    stream.properties("run", {"key": key, **properties})
+    stream.properties(
+        "scene",
+        {
+            "width": scene.width,
+            "height": scene.height,
+            "robots": len(scene.positions),
+            "robot_radius": scene.radius,
+            "capacity": max(scene.capacities),
+            "radio_range": scene.radio_range,
+            "search_radius": scene.search_radius,
+            "graph": scene.graph,
+            "protocol": scene.protocol,
+            "motion": scene.motion,
+            "world": scene.world,
+            "seed": scene.seed,
+        },
+    )
+
+
+def draw_scene(stream: Stream, story: Story) -> None:
+    """The floor, and for everything that comes and goes its size, colour and place in the stack."""
+    scene, mark = story.scene, story.mark
+    stream.static(scheme.WORLD, rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0])))  # y points up
+    _draw_floor(stream, scene)
+    line = 0.1 * mark
+    for part in scheme.LINK_PARTS:
+        _style_lines(stream, f"{scheme.UDG}/{part}", 0.8 * line, scheme.UDG_COLOUR, 1.0)
+        _style_lines(stream, f"{scheme.ROUTING}/{part}", 1.4 * line, scheme.ROUTING_COLOUR, 2.0)
+    _style_lines(stream, scheme.STRAIGHT, 1.6 * line, scheme.WINNER_COLOUR, 9.0)
+    _style_lines(stream, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
+    _style_lines(stream, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
+    for order, kind in enumerate(scheme.KIND_COLOURS):
+        width = 1.6 if kind in ("call", "bid") else 2.8
+        _style_arrows(stream, scheme.messages(kind), width * line, scheme.kind_colour(kind), order)
+    _style_arrows(stream, scheme.LOST, 1.6 * line, scheme.LOST_COLOUR, 7)
+    stream.static(
+        scheme.PACKET,
+        rr.Arrows2D.from_fields(radii=3.6 * line, colors=scheme.PACKET_COLOUR, draw_order=18.0),
+    )
+    stream.static(scheme.RINGS, rr.Points2D.from_fields(radii=RING * mark, draw_order=19.0))
+    stream.static(
+        scheme.ROBOTS,
+        rr.Points2D.from_fields(
+            radii=mark,
+            draw_order=21.0,
+            labels=[f"r{robot}" for robot in range(story.n)],
+            show_labels=False,
+        ),
+    )
+    stream.static(
+        scheme.MOVERS,
+        rr.Points2D.from_fields(radii=mark, draw_order=25.0, show_labels=True),
+        rr.Arrows2D.from_fields(radii=2.2 * line, colors=scheme.WINNER_COLOUR),
+    )
+    stream.static(
+        scheme.EVENT,
+        rr.Points2D.from_fields(
+            radii=0.45 * mark, colors=scheme.EVENT_COLOUR, draw_order=27.0, show_labels=False
+        ),
+        rr.Ellipses2D.from_fields(
+            half_sizes=[[TARGET * mark, TARGET * mark]],
+            line_radii=2.2 * line,
+            colors=scheme.EVENT_COLOUR,
+            show_labels=False,
+        ),
+    )
+    radius = scene.search_radius
+    if radius > 0.0:
+        stream.static(
+            scheme.SEARCH,
+            rr.Ellipses2D.from_fields(
+                half_sizes=[[radius, radius]],
+                line_radii=1.2 * line,
+                colors=scheme.SEARCH_COLOUR,
+                draw_order=3.0,
+                show_labels=False,
+            ),
+        )
+    stream.static(
+        scheme.NAMES, rr.Points2D.from_fields(radii=0.001, draw_order=40.0, show_labels=True)
+    )
+    describe_phases(stream)
+    describe_counts(stream)
+    describe_lifetime(stream)
+    stream.static(
+        scheme.TREE,
+        rr.GraphNodes.from_fields(show_labels=True),
+        rr.GraphEdges.from_fields(graph_type=rr.components.GraphType.Directed),
+    )
+    stream.static(scheme.GUIDE, rr.TextDocument(guide(story), media_type=rr.MediaType.MARKDOWN))
+
+
+def _style_lines(stream: Stream, path: str, radius: float, colour: int, order: float) -> None:
+    stream.static(path, rr.LineStrips2D.from_fields(radii=radius, colors=colour, draw_order=order))
+
+
+def _style_arrows(stream: Stream, path: str, radius: float, colour: int, order: int) -> None:
+    stream.static(
+        path, rr.Arrows2D.from_fields(radii=radius, colors=colour, draw_order=10.0 + order)
+    )
+
+
+def _draw_floor(stream: Stream, scene: Scene) -> None:
+    scale = PIXELS / max(scene.width, scene.height)
+    stream.static(
+        scheme.GROUND,
+        rr.Transform3D(
+            translation=[0.0, scene.height, 0.0], mat3x3=np.diag([1 / scale, -1 / scale, 1.0])
+        ),
+        rr.EncodedImage(contents=_ground(scene, scale), media_type="image/png", draw_order=-100.0),
+    )
+    side = max(scene.width, scene.height)
+    _outline(
+        stream,
+        scheme.WALLS,
+        [[(0, 0), (scene.width, 0), (scene.width, scene.height), (0, scene.height)]],
+        scheme.WALL_COLOUR,
+        0.002 * side,
+    )
+    if scene.hole is not None:
+        _outline(stream, scheme.HOLE, [scene.hole], scheme.HOLE_COLOUR, 0.0015 * side)
+    _outline(stream, scheme.OBSTACLES, scene.obstacles, scheme.OBSTACLE_COLOUR, 0.002 * side)
+    _draw_scales(stream, scene)
+
+
+def _outline(
+    stream: Stream, path: str, outlines: list[list[Point]], colour: int, radius: float
+) -> None:
+    """Closed lines around shapes."""
+    if outlines:
+        closed = [np.array([*outline, outline[0]], np.float32) for outline in outlines]
+        stream.static(
+            path,
+            rr.LineStrips2D(closed, colors=colour, radii=radius, draw_order=-50.0),
+        )
+
+
+def _draw_scales(stream: Stream, scene: Scene) -> None:
+    """Metres along two walls, and what colour means how much energy."""
+    side = max(scene.width, scene.height)
+    step = next(s for s in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 1e9) if side / s <= 6.0)
+    hang = HANG * side
+    across = np.arange(0.0, scene.width + 1e-9, step).tolist()
+    marks = [(x, -0.012 * side, f"{x:g}") for x in across[:-1]]
+    marks.append((across[-1], -0.012 * side, f"{across[-1]:g} m"))
+    up = np.arange(step, scene.height + 1e-9, step).tolist()
+    marks += [(-0.03 * side, y + hang, f"{y:g}") for y in up]
+    capacity = max(scene.capacities)
+    left, width = scene.width + 0.035 * side, 0.02 * side
+    low, high = 0.25 * scene.height, 0.75 * scene.height
+    for share, unit in ((0.0, ""), (0.5, ""), (1.0, " J")):
+        y = low + share * (high - low) + hang
+        marks.append((left + width + 0.04 * side, y, f"{share * capacity:g}{unit}"))
+    stream.static(
+        scheme.SCALES,
+        rr.Points2D(
+            [(x, y) for x, y, _ in marks],
+            labels=[text for _, _, text in marks],
+            colors=scheme.TEXT_COLOUR,
+            radii=0.001,
+            show_labels=True,
+        ),
+    )
+    stream.static(
+        scheme.ENERGY_SCALE,
+        rr.Transform3D(
+            translation=[left, low, 0.0], mat3x3=np.diag([width, (high - low) / 256, 1.0])
+        ),
+        rr.Image(TABLE[:, None, :], draw_order=-90.0),
+    )
+
+
+def _ground(scene: Scene, scale: float) -> bytes:
+    """The floor from above as a PNG, a metre being ``scale`` pixels."""
+    size = max(1, round(scale * scene.width)), max(1, round(scale * scene.height))
+    image = Image.new("P", size, 0)
+    image.putpalette([part for colour in (FLOOR, GRID, EMPTY, HATCH, BLOCK) for part in colour])
+    grid_line, empty, hatch, block = 1, 2, 3, 4
+    draw = ImageDraw.Draw(image)
+
+    def pixels(points: list[Point]) -> list[Point]:
+        return [(scale * x, size[1] - scale * y) for x, y in points]
+
+    grid = 1.0 if max(scene.width, scene.height) <= 20.0 else 5.0
+    for x in np.arange(grid, scene.width, grid).tolist():
+        draw.line(pixels([(x, 0.0), (x, scene.height)]), fill=grid_line)
+    for y in np.arange(grid, scene.height, grid).tolist():
+        draw.line(pixels([(0.0, y), (scene.width, y)]), fill=grid_line)
+    if scene.hole is not None:
+        mask = Image.new("1", size, 0)
+        ImageDraw.Draw(mask).polygon(pixels(scene.hole), fill=1)
+        hatched = Image.new("P", size, empty)
+        lines = ImageDraw.Draw(hatched)
+        for start in range(-size[1], size[0], 26):
+            lines.line([(start, 0), (start + size[1], size[1])], fill=hatch, width=3)
+        image.paste(hatched, mask=mask)
+    for obstacle in scene.obstacles:
+        draw.polygon(pixels(obstacle), fill=block)
+    buffer = io.BytesIO()
+    image.save(buffer, "PNG")
+    return buffer.getvalue()

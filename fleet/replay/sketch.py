@@ -1,0 +1,257 @@
+"""A moment of a recording, drawn with matplotlib: what the viewer shows of the floor."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Polygon
+from numpy.typing import NDArray
+
+from fleet.replay import scheme
+from fleet.replay.readback import Recording, Values
+from fleet.replay.shades import TABLE
+
+FloatArray = NDArray[np.float64]
+
+
+class Theme(NamedTuple):
+    """Colours that depend on the ground."""
+
+    ground: str
+    ink: str
+    grid: str
+    rim: str
+    text: float  # how much of a colour's light is left when it is a text
+    links: tuple[float, float]  # opacity of all links in range, and of those of the routing graph
+
+
+THEMES = {
+    "light": Theme("#ffffff", "#1b222c", "#eceff3", "#ffffff", 0.62, (0.28, 0.8)),
+    "dark": Theme("#10151d", "#dfe5ee", "#1a2230", "#0b0e14", 1.0, (0.4, 0.8)),
+}
+
+
+class Sketch:
+    """Draws a recording at one moment after another.
+
+    Raises:
+        ValueError: there is no theme of that name.
+    """
+
+    def __init__(self, recording: Recording, theme: str = "light") -> None:
+        if theme not in THEMES:
+            raise ValueError(f"theme {theme!r}; expected one of {', '.join(THEMES)}")
+        self._recording = recording
+        self._theme = THEMES[theme]
+        scene = recording.properties["scene"]
+        self._size = float(scene["width"]), float(scene["height"])
+        self._capacity = float(scene["capacity"])
+        self._search = float(scene["search_radius"])
+        self._mark = float(
+            cast(NDArray[np.float32], recording.static(scheme.ROBOTS, "Points2D:radii"))[0]
+        )
+
+    def draw(self, axes: Axes, timeline: str, moment: float) -> None:
+        """Draw the state at ``moment`` of a timeline (s, or a number) into empty ``axes``.
+
+        Raises:
+            ValueError: the recording has no such timeline or moment.
+        """
+        self._recording.check_moment(timeline, moment)
+        self._when = timeline, moment
+        self._axes = axes
+        self._floor()
+        faint, clear = self._theme.links
+        for path, width, colour, alpha in (
+            (scheme.UDG, 0.35, scheme.UDG_COLOUR, faint),
+            (scheme.ROUTING, 0.9, scheme.ROUTING_COLOUR, clear),
+        ):
+            for part in scheme.LINK_PARTS:
+                self._lines(f"{path}/{part}", width, colour, alpha=alpha)
+        self._event()
+        self._lines(scheme.STRAIGHT, 0.9, scheme.WINNER_COLOUR, outlined=True)
+        self._lines(scheme.DRIVEN, 1.8, scheme.WINNER_COLOUR, outlined=True)
+        drawn = self._arrows()
+        self._discs(scheme.RINGS, 1.75, 4.0, rim=1.35)
+        self._discs(scheme.ROBOTS, 1.0, 5.0)
+        self._discs(scheme.MOVERS, 1.0, 6.0)
+        self._noses()
+        self._lines(scheme.DEAD, 1.2, scheme.CROSS_COLOUR, order=7.0)
+        self._labels()
+        self._legend(drawn)
+
+    def colour_bar(self, axes: Axes) -> None:
+        """What colour means how much energy, into axes of its own."""
+        scale = ScalarMappable(Normalize(0.0, self._capacity), ListedColormap(TABLE / 255.0))
+        figure = axes.get_figure()
+        assert figure is not None
+        bar = figure.colorbar(scale, cax=axes, label="battery [J]")
+        ink = self._theme.ink
+        bar.ax.tick_params(colors=ink, labelsize=7)
+        bar.ax.yaxis.label.set(color=ink, size=8)
+        cast(Line2D, bar.outline).set_visible(False)
+
+    def caption(self) -> str:
+        """The moment in words: event, message and time."""
+        timeline, moment = self._when
+        time, event, message = self._recording.moment_at(timeline, moment)
+        if timeline == scheme.SIM_TIME:
+            time = moment
+        return f"event {event}  ·  message {message}  ·  {time:.2f} s"
+
+    def _get(self, entity: str, component: str) -> Values:
+        found = self._recording.at(entity, component, *self._when)
+        return np.empty(0) if found is None else found
+
+    def _points(self, entity: str, component: str) -> FloatArray:
+        return np.asarray(self._get(entity, component), float).reshape(-1, 2)
+
+    def _floor(self) -> None:
+        axes, theme, (width, height) = self._axes, self._theme, self._size
+        side = max(self._size)
+        axes.set(
+            aspect="equal", xlim=(-0.01 * side, width + 0.01 * side),
+            ylim=(-0.01 * side, height + 0.01 * side), xlabel="x [m]", ylabel="y [m]",
+            facecolor=theme.ground,
+        )  # fmt: skip
+        axes.grid(visible=True, color=theme.grid, linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.tick_params(colors=theme.ink, labelsize=7, length=0)
+        for label in (axes.xaxis.label, axes.yaxis.label):
+            label.set(color=theme.ink, size=8)
+        for spine in axes.spines.values():
+            spine.set(color=theme.ink, linewidth=0.8, alpha=0.6)
+        hole = self._recording.static(scheme.HOLE, "LineStrips2D:strips")
+        for outline in hole or ():
+            axes.add_patch(
+                Polygon(
+                    np.asarray(outline), fill=False, hatch="////", edgecolor=theme.ink, alpha=0.18
+                )
+            )
+        for outline in self._recording.static(scheme.OBSTACLES, "LineStrips2D:strips") or ():
+            axes.add_patch(Polygon(np.asarray(outline), facecolor=theme.ink, alpha=0.35))
+
+    def _lines(
+        self, path: str, width: float, colour: int, *, order: float = 2.0, alpha: float = 1.0,
+        outlined: bool = False,
+    ) -> None:  # fmt: skip
+        strips = self._get(path, "LineStrips2D:strips")
+        if not len(strips):
+            return
+        lines = [np.asarray(strip) for strip in strips]
+        if outlined and self._theme.ground == THEMES["light"].ground:
+            self._axes.add_collection(
+                LineCollection(lines, colors=self._theme.ink, linewidths=width + 0.8, zorder=order)
+            )
+        self._axes.add_collection(
+            LineCollection(lines, colors=rgb(colour), linewidths=width, zorder=order, alpha=alpha)
+        )
+
+    def _event(self) -> None:
+        sites = self._points(scheme.EVENT, "Points2D:positions")
+        colour = rgb(scheme.EVENT_COLOUR)
+        for site in sites:
+            if self._search > 0.0:
+                self._axes.add_patch(
+                    Circle(site, self._search, fill=False, color=colour, alpha=0.5, linewidth=0.8)
+                )
+            self._axes.add_patch(
+                Circle(site, 2.3 * self._mark, fill=False, color=colour, linewidth=1.6, zorder=6.5)
+            )
+            self._axes.add_patch(Circle(site, 0.45 * self._mark, color=colour, zorder=6.5))
+
+    def _arrows(self) -> list[str]:
+        """The conversation so far; returns the kinds that were drawn."""
+        drawn = []
+        for path in sorted(self._recording.entities):
+            if path.startswith(f"{scheme.MESSAGES}/"):
+                colour = rgb(scheme.arrow_colour(path))
+                if self._quiver(path, colour, 0.0042):
+                    drawn.append(path.rpartition("/")[2])
+        self._quiver(scheme.PACKET, self._theme.ink, 0.0062)
+        return drawn
+
+    def _quiver(self, path: str, colour: str, width: float) -> bool:
+        origins = self._points(path, "Arrows2D:origins")
+        if not len(origins):
+            return False
+        vectors = self._points(path, "Arrows2D:vectors")
+        light = self._theme.ground == THEMES["light"].ground
+        self._axes.quiver(
+            *origins.T, *vectors.T, angles="xy", scale_units="xy", scale=1.0, width=width,
+            color=colour, edgecolor=self._theme.ink if light else "none",
+            linewidth=0.4 if light else 0.0, headwidth=3.2, headlength=3.6, headaxislength=3.2,
+            zorder=3.0,
+        )  # fmt: skip
+        return True
+
+    def _discs(self, path: str, radius: float, order: float, rim: float = 0.0) -> None:
+        places = self._points(path, "Points2D:positions")
+        shown = ~np.isnan(places).any(axis=1)
+        if not shown.any():
+            return
+        paint = np.asarray(self._get(path, "Points2D:colors"), np.uint32)[shown]
+        for scale, colour in (
+            (radius, [rgb(c) for c in paint.tolist()]),
+            (rim, self._theme.ground),
+        ):
+            size = np.full(int(shown.sum()), 2.0 * scale * self._mark)
+            if scale:
+                self._axes.add_collection(
+                    EllipseCollection(
+                        size, size, np.zeros_like(size), units="xy", offsets=places[shown],
+                        transOffset=self._axes.transData, facecolors=colour,
+                        edgecolors=self._theme.rim, linewidths=0.4, zorder=order,
+                    )
+                )  # fmt: skip
+
+    def _noses(self) -> None:
+        origins = self._points(scheme.MOVERS, "Points2D:positions")
+        ends = origins + self._points(scheme.MOVERS, "Arrows2D:vectors")
+        for robot, nose in zip(origins, ends, strict=True):
+            self._axes.plot(
+                *zip(robot, nose, strict=True), color=self._theme.ink, lw=1.2, zorder=6.2
+            )
+
+    def _labels(self) -> None:
+        hang = 0.02 * max(self._size)  # of the viewer's labels; here they hang on their middle
+        words = self._get(scheme.NAMES, "Points2D:labels")
+        places = self._points(scheme.NAMES, "Points2D:positions") - [0.0, hang]
+        paint = np.asarray(self._get(scheme.NAMES, "Points2D:colors"), np.uint32).tolist()
+        for word, (x, y), colour in zip(words, places.tolist(), paint, strict=True):
+            self._text(x, y, str(word), rgb(colour, self._theme.text))
+        movers = self._points(scheme.MOVERS, "Points2D:positions").tolist()
+        names = self._get(scheme.MOVERS, "Points2D:labels")
+        for name, (x, y) in zip(names, movers, strict=False):
+            self._text(x, y - 2.0 * hang, str(name), self._theme.ink)
+
+    def _text(self, x: float, y: float, text: str, colour: str) -> None:
+        self._axes.text(
+            x, y, text, color=colour, size=7, ha="center", va="center", zorder=8.0, clip_on=True,
+            bbox={"boxstyle": "round,pad=.2", "fc": self._theme.ground, "ec": "none", "alpha": 0.8},
+        )  # fmt: skip
+
+    def _legend(self, drawn: list[str]) -> None:
+        kinds = [kind for kind in (*scheme.KIND_LABELS, "lost") if kind in drawn]
+        handles = [
+            Line2D([], [], color=rgb(scheme.arrow_colour(scheme.messages(kind))), lw=2.0)
+            for kind in kinds
+        ]
+        if handles:
+            self._axes.legend(
+                handles, [scheme.KIND_LABELS.get(kind, kind) for kind in kinds], ncols=len(kinds),
+                loc="upper center", bbox_to_anchor=(0.5, -0.09), frameon=False, fontsize=7,
+                labelcolor=self._theme.ink, handlelength=1.4, columnspacing=1.2,
+            )  # fmt: skip
+
+
+def rgb(colour: int, light: float = 1.0) -> str:
+    """A colour 0xRRGGBBAA as matplotlib writes it, without its opacity."""
+    parts = [round(light * (colour >> shift & 255)) for shift in (24, 16, 8)]
+    return "#{:02x}{:02x}{:02x}".format(*parts)

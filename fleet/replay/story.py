@@ -1,0 +1,146 @@
+"""What the writer knows of the run so far, and the pages that tell it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import dist
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.replay.columns import Moment
+from fleet.replay.journal import Scene, Told
+from fleet.replay.stream import Stream
+from protocols.messages import Point, RobotId
+
+
+class TripEnd(NamedTuple):
+    """A trip, as :class:`fleet.motion.Trip` has it."""
+
+    robot: RobotId
+    outcome: str
+    origin: Point  # [m]
+    site: Point  # [m]
+    end: Point  # [m]
+    departed: float  # [s]
+    ended: float  # [s]
+    path: float  # [m]
+    energy: float  # [J]
+
+
+class UnderWay(NamedTuple):
+    """A robot that drives."""
+
+    event: int
+    origin: Point  # [m]
+    site: Point  # [m]
+    departed: float  # [s]
+
+
+@dataclass(slots=True)
+class Conversation:
+    """What has been said about an event since it was last raised."""
+
+    event: int
+    site: Point  # [m]
+    source: RobotId
+    lines: list[Told] = field(default_factory=list)
+
+    def count(self, kind: str) -> int:
+        """Transmissions of a kind so far."""
+        return sum(line.kind == kind for line in self.lines)
+
+    @property
+    def calls(self) -> int:
+        """Calls for bids so far."""
+        return self.count("call")
+
+    @property
+    def parents(self) -> dict[RobotId, RobotId]:
+        """Whom each robot first heard the call from, in the order in which they heard it."""
+        parents: dict[RobotId, RobotId] = {}
+        callers: set[RobotId] = set()
+        for line in self.lines:
+            if line.kind == "call":
+                callers.add(line.sender)
+                for robot in line.heard:
+                    if robot not in callers:
+                        parents.setdefault(robot, line.sender)
+        return parents
+
+
+class Story:
+    """The state of the fleet, kept up to the happening that is being told."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.n = len(scene.positions)
+        self.positions = np.array(scene.positions, float).reshape(-1, 2)  # latest known [m]
+        self.energies = np.array(scene.energies)  # (n,) [J]
+        self.capacity = max(scene.capacities)  # [J]
+        self.on_air = self.energies > 0.0  # (n,)
+        self.under_way: dict[RobotId, UnderWay] = {}
+        self.sites: dict[int, Point] = {}  # of the events that are not over [m]
+        self.talks: dict[int, Conversation] = {}  # by event, the latest about each open one
+        self.round = 0
+        self.now = 0.0  # [s]
+        self.mark = mark_of(scene)
+
+    def at(self, robot: RobotId) -> Point:
+        """Where a robot is, as far as known [m]."""
+        x, y = self.positions[robot].tolist()
+        return x, y
+
+    def foreseen(self, robot: RobotId, site: Point) -> float:
+        """What Eq. (1) charges for the straight line from where the robot is to a site [J]."""
+        return self.scene.per_metre * dist(self.at(robot), site)
+
+
+def mark_of(scene: Scene) -> float:
+    """The radius that robots are drawn with [m]: theirs, unless they would be hard to see."""
+    return max(scene.radius, 0.0055 * max(scene.width, scene.height))
+
+
+class Page:
+    """One part of the picture: it is told what happens and turns it into rows.
+
+    The story is up to date when a page is told, and knows the trip that ended no more.
+    """
+
+    def started(self, story: Story) -> None:
+        """Everybody is in place."""
+
+    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """An event is told to a robot; again, by another, if nobody went or arrived."""
+
+    def told(self, at: Moment, line: Told) -> None:
+        """A transmission was made."""
+
+    def awarded(
+        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
+        bids: list[tuple[float, RobotId]],
+    ) -> None:  # fmt: skip
+        """A conversation is over."""
+
+    def broken(self, at: Moment, event: int, reason: str) -> None:
+        """A conversation came to no end."""
+
+    def over(self, at: Moment, event: int, outcome: str) -> None:
+        """An event is "served", "expired" or "lost"; the story knows it no more."""
+
+    def departed(self, at: Moment, robot: RobotId) -> None:
+        """A robot sets off."""
+
+    def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
+        """Poses (k, 6) of those under way, up to now; the moment's time is that of the last."""
+
+    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+        """A robot came to rest."""
+
+    def finished(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
+        """Nothing more happens; without a summary, the run broke off."""
+
+    def send(self, stream: Stream) -> None:
+        """Pass on the rows made since the last time."""

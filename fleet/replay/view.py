@@ -1,0 +1,191 @@
+"""Looking at recordings: in the native viewer, in a browser, or as they are made.
+
+The viewer is the program inside the rerun wheel. It listens on this machine's loopback only,
+and sends nothing anywhere else.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from urllib.parse import quote
+
+from fleet.replay.serving import LOOPBACK, confined
+
+PATIENCE = 30.0  # [s] for a viewer to start
+
+
+def view(
+    recordings: Sequence[Path],
+    *,
+    web: bool = False,
+    timeline: str | None = None,
+    tell: Callable[[str], object] = print,
+) -> None:
+    """Show recordings until the window is closed, or Ctrl-C.
+
+    Args:
+        recordings: .rrd files; several are shown side by side.
+        web: serve them to a browser on this machine instead of opening a window.
+        timeline: the one to scrub by at first; None: the time, or for several the round.
+        tell: is given the address to open in a browser.
+
+    Raises:
+        ValueError: a file cannot be read, or no window can be opened here.
+    """
+    with _ready(recordings, timeline) as ready:
+        try:
+            if web:
+                with serve(ready) as address:
+                    tell(address)
+                    while True:
+                        time.sleep(3600.0)
+            else:
+                _open_window(ready)
+        except KeyboardInterrupt:
+            pass
+
+
+@contextmanager
+def serve(recording: Path) -> Iterator[str]:
+    """The address of a web viewer that shows a recording; it works without a network.
+
+    Raises:
+        ValueError: the server does not start.
+    """
+    page, data = free_port(), free_port()
+    with tempfile.TemporaryFile() as said:
+        server = subprocess.Popen(  # noqa: S603 - the program inside the wheel
+            [
+                str(viewer_binary()), "--serve-web", "--bind", LOOPBACK,
+                "--web-viewer-port", str(page), "--port", str(data), str(recording),
+            ],
+            env=viewer_environment(),
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+        )  # fmt: skip
+        try:
+            if not (_answers(page, server) and _answers(data, server)):
+                said.seek(0)
+                reason = said.read().decode(errors="replace").strip()
+                raise ValueError(f"the web viewer did not start: {reason[-300:]}")
+            source = quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
+            with confined(page, data) as port:
+                yield f"http://{LOOPBACK}:{port}/?renderer=webgl&url={source}"
+        finally:
+            server.terminate()
+            server.wait()
+
+
+def spawn_viewer() -> str:
+    """Open a viewer that outlives this process; returns the address to stream to.
+
+    Raises:
+        ValueError: no window can be opened here.
+    """
+    port = free_port()
+    viewer = subprocess.Popen(  # noqa: S603 - the program inside the wheel
+        [
+            str(viewer_binary()), "--bind", LOOPBACK, "--port", str(port),
+            "--hide-welcome-screen",
+        ],
+        env=viewer_environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )  # fmt: skip
+    if not _answers(port, viewer):
+        raise ValueError("the viewer cannot open a window here; record to a file instead")
+    viewer.returncode = 0  # it is on its own now: nobody waits for it
+    return f"rerun+http://{LOOPBACK}:{port}/proxy"
+
+
+def viewer_binary() -> Path:
+    """The viewer inside the rerun wheel; the ``rerun`` script on the path only forks it."""
+    spec = find_spec("rerun_cli")
+    assert spec is not None
+    assert spec.submodule_search_locations
+    folder = Path(spec.submodule_search_locations[0])
+    return folder / ("rerun.exe" if os.name == "nt" else "rerun")
+
+
+def viewer_environment() -> dict[str, str]:
+    """Surroundings in which the viewer sends nothing home."""
+    return {**os.environ, "CI": "1", "RUST_LOG": "error"}
+
+
+def free_port() -> int:
+    """A TCP port of this machine that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind((LOOPBACK, 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def _ready(recordings: Sequence[Path], timeline: str | None) -> Iterator[Path]:
+    """One file to show: the only recording as it is, or several arranged in one."""
+    for path in recordings:
+        _check(path)
+    if len(recordings) == 1 and timeline is None:
+        yield recordings[0]
+        return
+    from fleet.replay.compare import arrange
+
+    with tempfile.TemporaryDirectory() as folder:
+        arranged = Path(folder) / "arranged.rrd"
+        arrange(recordings, arranged, timeline)
+        yield arranged
+
+
+def _check(path: Path) -> None:
+    """Raises ValueError unless the file begins as a recording does."""
+    try:
+        with path.open("rb") as file:
+            magic = file.read(4)
+    except OSError as error:
+        raise ValueError(f"cannot open {path}: {error.strerror}") from error
+    if not magic.startswith(b"RRF"):
+        raise ValueError(f"{path}: not a Rerun recording")
+
+
+def _open_window(recording: Path) -> None:
+    with tempfile.TemporaryFile() as said:
+        viewer = subprocess.Popen(  # noqa: S603 - the program inside the wheel
+            [
+                str(viewer_binary()), "--bind", LOOPBACK, "--port", str(free_port()),
+                str(recording),
+            ],
+            env=viewer_environment(),
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+        )  # fmt: skip
+        try:
+            code = viewer.wait()
+        finally:
+            viewer.terminate()
+            viewer.wait()
+        if code > 0:
+            said.seek(0)
+            lines = said.read().decode(errors="replace").strip().splitlines()
+            reason = lines[0] if lines else f"exit code {code}"
+            raise ValueError(f"the viewer cannot open a window here ({reason}); try a browser")
+
+
+def _answers(port: int, process: subprocess.Popen[bytes]) -> bool:
+    """Wait for a port to be listened on; False: the process has ended, or takes too long."""
+    deadline = time.monotonic() + PATIENCE
+    while process.poll() is None and time.monotonic() < deadline:
+        try:
+            with socket.create_connection((LOOPBACK, port), timeout=1.0):
+                return True
+        except OSError:
+            time.sleep(0.05)
+    return False

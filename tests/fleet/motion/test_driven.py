@@ -1,0 +1,257 @@
+"""The interface: time in steps, trips that end, what robots believe, poses for observers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, dist, inf, pi, sin
+
+import numpy as np
+import pytest
+
+from fleet.energy import ExtraPower
+from fleet.motion.catalogue import MOTIONS
+from fleet.motion.driven import DrivenMotion
+from fleet.motion.options import DriveOptions
+from fleet.robot import PRESETS, RobotSpec
+from worlds.arena import Arena
+from worlds.shapes import Polygon
+
+SPEC = RobotSpec(capacity=1e4)
+EQ1 = SPEC.power.per_metre(SPEC.cruise)
+BLOCK = Arena(obstacles=(Polygon(((4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0))),))
+RING = [(5.0 + 0.41 * cos(k * pi / 6), 5.0 + 0.41 * sin(k * pi / 6)) for k in range(12)]
+
+
+def test_now_is_the_last_step_not_after_until(driving):
+    motion, (robot,) = driving([(1.0, 1.0)], SPEC, dt=1.0 / 60.0)
+    for until, steps in ((0.1, 6), (0.109, 6), (0.2, 12), (1.0, 60), (1.0 + 1e-12, 60)):
+        assert motion.advance(until) == []
+        assert motion.now == pytest.approx(steps / 60.0, abs=1e-15)
+    motion.depart(robot, (9.0, 1.0))
+    for k in range(50):
+        motion.advance(1.0 + 0.1 * k)
+        assert motion.now == pytest.approx(1.0 + 0.1 * k, abs=1e-12)
+    motion.advance(motion.now - 0.5)
+    assert motion.now == pytest.approx(5.9)
+    motion.advance(inf)
+    ended = motion.now
+    assert motion.advance(inf) == []
+    assert motion.now == ended
+
+
+def test_advance_returns_as_soon_as_a_trip_ends(driving):
+    motion, (one, two) = driving([(1.0, 1.0), (1.0, 5.0)], SPEC)
+    motion.depart(one, (3.0, 1.0))
+    motion.depart(two, (2.0, 5.0))
+    assert motion.moving == (one, two)
+    assert one.cost_to((5.0, 5.0)) == inf
+    (first,) = motion.advance(100.0)
+    assert (first.robot, first.ended) == (1, motion.now)
+    assert two.position == (2.0, 5.0)
+    assert 1.0 < one.position[0] < 3.0
+    assert one.battery.charge < 1e4
+    assert motion.moving == (one,)
+    (second,) = motion.advance(100.0)
+    assert second.robot == 0
+    assert motion.now < 100.0
+    assert motion.advance(100.0) == []
+    assert motion.now == pytest.approx(100.0)
+
+
+def test_without_a_path_the_trip_is_over_at_once(driving):
+    motion, robots = driving([(5.0, 5.0), *RING], SPEC)
+    assert robots[0].cost_to((8.0, 8.0)) == inf
+    motion.depart(robots[0], (8.0, 8.0))
+    (trip,) = motion.advance(100.0)
+    assert (trip.outcome, trip.energy, trip.path, trip.ended) == ("no path", 0.0, 0.0, 0.0)
+    assert motion.now == 0.0
+    assert motion.moving == ()
+    assert robots[0].position == trip.end == (5.0, 5.0)
+
+
+def test_who_is_there_already_arrives_at_once(driving):
+    motion, (robot,) = driving([(5.0, 5.0)], SPEC, engine=True)
+    motion.depart(robot, (5.0, 5.0))
+    (trip,) = motion.advance(1.0)
+    assert (trip.outcome, trip.energy, trip.steps, motion.now) == ("arrived", 0.0, 0, 0.0)
+    motion.depart(robot, (6.0, 5.0))
+    (trip,) = motion.advance(inf)
+    assert trip.end == pytest.approx((6.0, 5.0))
+
+
+def test_a_robot_under_way_cannot_be_sent(driving):
+    motion, (robot,) = driving([(5.0, 5.0)], SPEC)
+    motion.depart(robot, (6.0, 5.0))
+    with pytest.raises(ValueError, match="robot 0 is under way"):
+        motion.depart(robot, (7.0, 5.0))
+
+
+def test_free_traffic_needs_an_engine():
+    with pytest.raises(ValueError, match="'free' without an engine"):
+        DrivenMotion(SPEC, Arena(), DriveOptions(traffic="free"), engine=False)
+
+
+def test_what_a_robot_believes(driving):
+    start, site = (3.0, 5.0), (7.0, 5.0)
+    straight = EQ1 * 4.0
+    (motion, (robot,)) = driving([start], SPEC, BLOCK)
+    assert robot.cost_to(site) == pytest.approx(straight)
+    motion, (robot,) = driving([start], SPEC, BLOCK, belief="path")
+    path = robot.cost_to(site)
+    assert path > 1.1 * straight
+    motion.depart(robot, site)
+    (trip,) = motion.advance(inf)
+    assert path == pytest.approx(trip.energy_path)
+    motion, (robot,) = driving(
+        [start], SPEC, BLOCK, belief="corrected", per_metre=20.0, per_launch=5.0
+    )
+    assert robot.cost_to(site) == pytest.approx(20.0 * trip.planned + 5.0)
+
+
+def test_reachability_is_asked_for_only_if_wanted(driving):
+    for wanted in (True, False):
+        motion, robots = driving([(5.0, 5.0), *RING], SPEC, reachability=wanted)
+        believed = motion.cost(robots[0], (8.0, 8.0))
+        assert believed == (inf if wanted else pytest.approx(EQ1 * dist((5, 5), (8, 8))))
+        assert bool(motion._planner._known) == wanted
+
+
+def test_the_winner_departs_by_the_plan_of_its_bid(driving, monkeypatch):
+    motion, (one, two) = driving([(3.0, 5.0), (1.0, 1.0)], SPEC, BLOCK)
+    one.cost_to((7.0, 5.0))
+    two.cost_to((7.0, 5.0))
+    monkeypatch.setattr("fleet.motion.planning.plan", None)
+    motion.depart(one, (7.0, 5.0))
+    (trip,) = motion.advance(inf)
+    assert trip.outcome == "arrived"
+
+
+def test_a_broken_robot_stops_where_it_is(driving):
+    for engine in (True, False):
+        motion, (robot, other) = driving([(1.0, 1.0), (8.0, 8.0)], SPEC, engine=engine)
+        motion.depart(robot, (9.0, 1.0))
+        motion.advance(3.0)
+        here, charge = robot.position, robot.battery.charge
+        motion.halt(robot)
+        motion.halt(other)
+        (trip,) = motion.advance(10.0)
+        assert trip.outcome == "broken down"
+        assert trip.end == robot.position == here
+        assert trip.energy == pytest.approx(1e4 - charge)
+        assert trip.ended == motion.now == pytest.approx(3.0)
+        motion.depart(other, (5.0, 1.0))
+        (trip,) = motion.advance(inf)
+        assert dist(trip.end, here) >= 0.2
+
+
+def test_samples_are_rows_of_poses_on_the_way(driving):
+    motion, robots = driving(
+        [(1.0, 1.0), (1.0, 3.0)], SPEC, headings=[0.0, 3.0], engine=True, interval=0.1
+    )
+    motion.depart(robots[0], (3.0, 1.0))
+    motion.advance(0.25)
+    motion.depart(robots[1], (3.0, 3.0))
+    rows = [motion.samples()]
+    while motion.moving:
+        motion.advance(motion.now + 0.5)
+        rows.append(motion.samples())
+    rows = np.vstack(rows)
+    assert rows.shape[1] == 6
+    assert (np.diff(rows[:, 1]) >= 0.0).all()
+    for robot in robots:
+        own = rows[rows[:, 0] == robot.id]
+        assert np.diff(own[:-1, 1]) == pytest.approx(0.1)
+        assert own[-1, 2:] == pytest.approx([*robot.position, robot.heading, robot.battery.charge])
+        assert (np.diff(own[:, 5]) <= 0.0).all()
+        assert (np.abs(own[:, 4]) <= pi).all()
+    assert len(motion.samples()) == 0
+
+
+def test_without_an_interval_there_are_no_samples(driving):
+    motion, (robot,) = driving([(1.0, 1.0)], SPEC)
+    motion.depart(robot, (3.0, 1.0))
+    motion.advance(inf)
+    assert motion.samples().shape == (0, 6)
+
+
+def test_many_samples_fit(driving):
+    points = [(0.5 + k % 10, 0.5 + k // 10) for k in range(60)]
+    motion, robots = driving(points, SPEC, interval=0.01)
+    for robot in robots:
+        motion.depart(robot, (robot.position[0], robot.position[1] + 0.45))
+    trips = []
+    while motion.moving:
+        trips += motion.advance(inf)
+    rows = motion.samples()
+    assert len(rows) == sum(trip.steps for trip in trips) > 1024
+
+
+def test_long_trips_and_many_pieces_fit(driving):
+    arena = Arena(200.0, 5.0)
+    columns = [[0.1 + 0.21 * k for k in range(20)], [4.9 - 0.21 * k for k in range(20)]]
+    slalom = [(x, y) for k, x in enumerate(range(10, 200, 8)) for y in columns[k % 2]]
+    motion, robots = driving([(1.0, 2.0), *slalom], SPEC, arena)
+    plan = motion._planner.plan(0, (1.0, 2.0), (199.0, 2.0))
+    assert len(plan.pieces) > 32
+    motion.depart(robots[0], (199.0, 2.0))
+    motion.depart(robots[1], (8.0, 1.0))
+    trips = []
+    while motion.moving:
+        trips += motion.advance(inf)
+    assert [trip.outcome for trip in trips] == ["arrived", "arrived"]
+    assert trips[1].path == pytest.approx(plan.length)
+    assert trips[1].ended > 200.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"dt": 0.0}, "dt is 0.0; expected more than 0"),
+        ({"dt": 0.2}, "dt is 0.2 s; expected at most 0.1"),
+        ({"traffic": "wild"}, "traffic is 'wild'; expected 'reserved' or 'free'"),
+        ({"belief": "hope"}, "belief is 'hope'; expected 'straight' or 'path' or 'corrected'"),
+        ({"clearances": ()}, r"clearances are \(\); expected"),
+        ({"clearances": (0.03, -0.1)}, "expected numbers above 0"),
+        ({"per_metre": 0.0}, "per_metre is 0.0 J; expected more than 0"),
+        ({"per_launch": -1.0}, "per_launch is -1.0 J; expected 0 or more"),
+        ({"headway": 0.0}, "headway is 0.0; expected more than 0"),
+        ({"replans": -1}, "replans is -1; expected 0 or more"),
+    ],
+)
+def test_bad_options_are_refused(keys, message):
+    with pytest.raises(ValueError, match=message):
+        DriveOptions(**keys)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"drive": "legs"}, "drive is 'legs'; expected 'differential' or 'holonomic'"),
+        ({"track": 0.5}, "track is 0.5; expected more than 0, at most 0.2"),
+        ({"acceleration": 0.0}, "acceleration is 0.0; expected more than 0"),
+    ],
+)
+def test_bad_robots_are_refused(keys, message):
+    with pytest.raises(ValueError, match=message):
+        RobotSpec(**keys)
+
+
+def test_bad_extra_power_is_refused():
+    with pytest.raises(ValueError, match=r"idle power is -1.0; expected 0 or more"):
+        ExtraPower(idle=-1.0)
+
+
+def test_wide_arcs_are_tried_first_where_narrow_ones_are_slow():
+    assert DriveOptions().ladder(SPEC) == (0.03, 0.015, 0.005, 0.001)
+    slow = replace(SPEC, turn_rate=2.0)
+    assert DriveOptions().ladder(slow)[0] == pytest.approx(0.76 / (0.95 * 2.0) - 0.2)
+    assert DriveOptions().ladder(replace(slow, drive="holonomic"))[0] == 0.03
+
+
+@pytest.mark.parametrize("name", ["path", "physics"])
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_catalogue_makes_them(name, preset, crowd):
+    entry = MOTIONS[name]
+    motion = entry.function(PRESETS[preset], Arena(), entry.options(), None)
+    assert isinstance(motion, DrivenMotion)
+    assert entry.solid

@@ -1,0 +1,217 @@
+"""The observer and the process behind it: when things go well, and when they do not."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fleet.observer import Observer
+from fleet.replay import recorder, scheme
+from fleet.replay.readback import Recording
+from fleet.replay.recording import RerunRecorder
+from fleet.replay.view import viewer_binary, viewer_environment
+from fleet.scenario.loading import scenario_from
+
+from .conftest import record, simulation
+
+
+def rerun(*arguments):
+    return subprocess.run(
+        [viewer_binary(), "rrd", *map(str, arguments)],
+        env=viewer_environment(), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def same(one, other):
+    """Whether two recordings hold the same. Rerun itself takes no NaN for equal to another."""
+    without = [path.with_suffix(".without.rrd") for path in (one, other)]
+    for path, out in zip((one, other), without, strict=True):
+        assert (
+            rerun("filter", "--drop-entity", f"/{scheme.ROBOTS}", path, "-o", out).returncode == 0
+        )
+    rows = [Recording(path).rows(scheme.ROBOTS, "Points2D:positions") for path in (one, other)]
+    return (
+        rerun("compare", "--unordered", *without).returncode == 0
+        and np.array_equal(*(np.array(row.values) for row in rows), equal_nan=True)
+        and all(np.array_equal(*(row.moments[t] for row in rows)) for t in scheme.TIMELINES)
+    )
+
+
+def events(recording):
+    return int(recording.span(scheme.ROUND)[1])
+
+
+class Breaks(Observer):
+    """Raises at the end of some trip."""
+
+    def __init__(self, after):
+        self.left = after
+
+    def trip_ended(self, event, trip):
+        self.left -= 1
+        if not self.left:
+            raise ArithmeticError("as planned")
+
+
+def test_loading_the_package_loads_no_rerun_nor_matplotlib():
+    code = "import fleet.replay, sys; print({'rerun', 'matplotlib', 'pyarrow'} & set(sys.modules))"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "set()"
+
+
+def test_recording_loads_no_rerun_into_the_run():
+    code = """
+        import sys
+        from pathlib import Path
+        from fleet.assembly import run
+        from fleet.replay import recorder
+        from fleet.scenario.loading import scenario_from
+        scenario = scenario_from({"motion": "straight", "robots": 20, "range": 4.0, "rounds": 2})
+        run(scenario, [recorder(scenario, Path(sys.argv[1]))])
+        print({'rerun', 'matplotlib', 'pyarrow'} & set(sys.modules))
+    """
+    said = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code), os.devnull],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert said.stdout.strip() == "set()"
+
+
+def test_the_file_is_sound(rounds):
+    assert rerun("verify", rounds.path).returncode == 0
+
+
+def test_the_same_seed_gives_the_same_recording(tmp_path):
+    paths = [tmp_path / f"{k}.rrd" for k in range(3)]
+    for path, seed in zip(paths, (4, 4, 5), strict=True):
+        record(path, seed=seed, rounds=6)
+    assert same(paths[0], paths[1])
+    assert not same(paths[0], paths[2])
+
+
+def test_how_often_notes_are_handed_on_changes_nothing(tmp_path):
+    paths = [tmp_path / "often.rrd", tmp_path / "seldom.rrd"]
+    for path, flush_rounds in zip(paths, (1, 1000), strict=True):
+        record(path, rounds=8, flush_rounds=flush_rounds)
+    assert same(*paths)
+
+
+def test_a_run_that_breaks_off_leaves_all_it_did(tmp_path):
+    path = tmp_path / "run.rrd"
+    watching = RerunRecorder(path, key="k", properties={}, strict=True)
+    with pytest.raises(ArithmeticError, match="as planned"):
+        simulation([Breaks(7), watching], rounds=20).run()
+    recording = Recording(path)
+    assert events(recording) == 7
+    assert rerun("verify", path).returncode == 0
+    assert "summary" not in recording.properties
+    assert scheme.ENERGY_MAP in recording.entities
+
+
+def test_a_run_that_is_killed_leaves_what_it_had_handed_on(tmp_path):
+    path = tmp_path / "run.rrd"
+    code = f"""
+        import os, signal
+        from pathlib import Path
+        from fleet.observer import Observer
+        from fleet.replay.recording import RerunRecorder
+        from fleet.assembly import run
+        from fleet.scenario.loading import scenario_from
+
+        class Dies(Observer):
+            left = 18
+            def trip_ended(self, event, trip):
+                self.left -= 1
+                if not self.left:
+                    os.kill(os.getpid(), signal.SIGKILL)
+
+        scenario = scenario_from({{"motion": "straight", "robots": 40, "range": 3.0, "seed": 4}})
+        watching = RerunRecorder(Path({str(path)!r}), key="k", properties={{}}, flush_rounds=5)
+        print(watching._writer.pid, flush=True)
+        run(scenario, [Dies(), watching])
+    """
+    killed = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code)], stdout=subprocess.PIPE, text=True
+    )
+    with killed:
+        writer = int(killed.stdout.readline())
+        killed.wait()
+    assert killed.returncode == -signal.SIGKILL
+    deadline = time.monotonic() + 30.0
+    while is_running(writer) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    recording = Recording(path)
+    assert events(recording) == 15
+    assert rerun("verify", path).returncode == 0
+
+
+def is_running(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return "Z" not in Path(f"/proc/{pid}/stat").read_text().split(")")[1][:3]
+
+
+def test_a_recording_that_fails_says_so(tmp_path):
+    watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={}, flush_rounds=1)
+    watching._writer.kill()
+    with pytest.raises(RuntimeError, match=r"the recording .*run\.rrd broke off"):
+        simulation([watching], rounds=10).run()
+
+
+def test_what_the_writer_died_of_is_told(tmp_path):
+    watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={})
+    watching._tell("batch", "nonsense")
+    with pytest.raises(RuntimeError, match="AssertionError") as caught:
+        watching.closed()
+    assert "Traceback" in caught.value.__notes__[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        ({"path": None}, "neither a file nor a viewer"),
+        ({"path": Path("nowhere/at/all.rrd")}, "cannot record to nowhere/at/all.rrd"),
+        ({"path": Path("/")}, "cannot record to /"),
+        ({"flush_rounds": 0}, "flush_rounds is 0; expected 1 or more"),
+        ({"sample_interval": 0.0}, "sample_interval is 0.0 s; expected more than 0"),
+    ],
+)
+def test_bad_input(tmp_path, arguments, complaint):
+    given = {"path": tmp_path / "run.rrd", "key": "k", "properties": {}, **arguments}
+    with pytest.raises(ValueError, match=complaint):
+        RerunRecorder(given.pop("path"), **given)
+
+
+def test_the_key_is_that_of_the_scenario(tmp_path):
+    keys = []
+    for seed in (1, 1, 2):
+        scenario = scenario_from({"motion": "straight", "robots": 10, "range": 6.0, "seed": seed})
+        watching = recorder(scenario, tmp_path / "run.rrd")
+        simulation([watching], robots=10, range=6.0, seed=seed, rounds=1).run()
+        recording = Recording(watching.path)
+        keys.append(recording.key)
+        assert recording.properties["run"]["seed"] == seed
+        assert recording.properties["run"]["robot_radius"] == scenario.robot.radius
+        assert recording.properties["run"]["version"]
+    assert keys[0] == keys[1] != keys[2]
+
+
+@pytest.mark.slow
+def test_bodies_driven_by_the_engine(tmp_path):
+    """Physics bends the way: driven and straight paths differ, and so does the energy."""
+    run = record(tmp_path / "run.rrd", motion="physics", robots=60, rounds=25, seed=3)
+    for _, trip, _ in run.witness.trips:
+        shown = run.recording.at(scheme.DRIVEN, "LineStrips2D:strips", scheme.SIM_TIME, trip.ended)
+        assert any(abs(strip[-1] - trip.end).max() < 0.3 for strip in shown)
+    foreseen, drained = run.recording.rows(scheme.TOTAL_ENERGY, "Scalars:scalars").values[-1]
+    assert drained > 1.05 * foreseen
