@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fleet.cli.failing import bad_input_exits
+
+if TYPE_CHECKING:
+    from fleet.observer import Observer
+    from fleet.scenario.model import Scenario
 
 
 @click.command("run")
@@ -43,7 +47,6 @@ def command(
     from fleet.assembly import run
     from fleet.cli.progress import RunProgress
     from fleet.cli.summary import print_summary
-    from fleet.observer import Observer
     from fleet.scenario.loading import load_scenario
 
     given = {k: v for k, v in {**options, "range": range_}.items() if v is not None}
@@ -51,9 +54,7 @@ def command(
         loaded = load_scenario(scenario, given, settings)
         observers: list[Observer] = [RunProgress(loaded.rounds)] if sys.stderr.isatty() else []
         if rrd is not None or view:
-            from fleet.replay import recorder
-
-            observers.append(recorder(loaded, rrd, live=view))
+            observers.append(recorded(loaded, rrd, live=view))
         summary = run(loaded, observers)
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
@@ -61,6 +62,23 @@ def command(
     print_summary(summary)
     if rrd is not None:
         click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
+
+
+def recorded(scenario: Scenario, path: Path | None, *, live: bool) -> Observer:
+    """The recorder for a file, a live viewer, or both.
+
+    Raises:
+        BadInput: the file cannot be written, or no viewer can be opened here.
+    """
+    from fleet.replay import recorder
+    from fleet.scenario.errors import bad
+
+    try:
+        if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        return recorder(scenario, path, live=live)
+    except (OSError, ValueError) as error:
+        raise bad("", str(error)) from error
 
 
 def program() -> str:
