@@ -26,7 +26,8 @@ class RunProgress(Observer):
             TimeElapsedColumn(), TimeRemainingColumn(), console=Console(stderr=True),
             transient=True,
         )  # fmt: skip
-        self._task = self._bar.add_task("getting ready", total=None, state="")
+        ready = "getting ready; the first run compiles its loops, which takes half a minute"
+        self._task = self._bar.add_task(ready, total=None, state="")
         self._bar.start()
 
     def run_started(self, fleet: Fleet) -> None:

@@ -84,6 +84,8 @@ def recorded(scenario: Scenario, path: Path | None, *, live: bool) -> Observer:
 def program() -> str:
     """How this program was called, for commands that are printed for the user."""
     called = Path(sys.argv[0])
+    if not called.is_absolute() and called.parent != Path():
+        return str(called)
     if called.name == "__main__.py":
         return f"{Path(sys.executable).name} -m fleet"
     try:

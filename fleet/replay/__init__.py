@@ -9,14 +9,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fleet.replay.picture import clip, picture
-from fleet.replay.recording import RerunRecorder
-from fleet.replay.view import view
-
 if TYPE_CHECKING:
+    from fleet.replay.picture import clip, picture
+    from fleet.replay.recording import RerunRecorder
+    from fleet.replay.view import view
     from fleet.scenario.model import Scenario
 
 __all__ = ["RerunRecorder", "clip", "picture", "recorder", "view"]
+
+_HOMES = {
+    "RerunRecorder": "fleet.replay.recording",
+    "clip": "fleet.replay.picture",
+    "picture": "fleet.replay.picture",
+    "view": "fleet.replay.view",
+}
 
 
 def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False) -> RerunRecorder:
@@ -29,6 +35,7 @@ def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False)
     import json
 
     from fleet import __version__
+    from fleet.replay.recording import RerunRecorder
 
     described: dict[str, Any] = scenario.as_dict()
     named = json.dumps({"version": __version__, **described}, sort_keys=True, default=str)
@@ -38,3 +45,12 @@ def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False)
         properties={"version": __version__, **described},
         live=live,
     )
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is asked for when it is asked for."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(_HOMES[name]), name)

@@ -32,6 +32,20 @@ class Told(NamedTuple):
     attempts: int  # frames it took
 
 
+class TripEnd(NamedTuple):
+    """A trip, as :class:`fleet.motion.Trip` has it."""
+
+    robot: RobotId
+    outcome: str
+    origin: Point  # [m]
+    site: Point  # [m]
+    end: Point  # [m]
+    departed: float  # [s]
+    ended: float  # [s]
+    path: float  # [m]
+    energy: float  # [J]
+
+
 Entry: TypeAlias = tuple[Any, ...]
 """A happening: its name, the transmissions made before it, and what the teller is told."""
 

@@ -10,6 +10,7 @@ import time
 from array import array
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from operator import attrgetter
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS, Trip
 from fleet.observer import Observer, Sent
-from fleet.replay.journal import Entry, Scene, send
+from fleet.replay.journal import Entry, Scene, TripEnd, send
 from protocols.messages import Award, Event, RobotId
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 MANY_SAMPLES = 50_000  # poses that are held back at most
 MANY_SENT = 50_000  # transmissions that are held back at most
 NO_SAMPLES = np.empty((0, len(SAMPLE_FIELDS)))
+FLAT_TRIP = attrgetter(*TripEnd._fields)
 PIPE = 1 << 20  # [bytes] that the writer may lag behind before the run waits
 LIVE_PAUSE = 0.1  # [s] between looks of a live viewer
 
@@ -171,15 +173,8 @@ class RerunRecorder(Observer):
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now: of all that can have been drained."""
         drained = self._batteries if self._all_drain else [self._batteries[trip.robot]]
-        self._note(
-            "ended",
-            event.id,
-            (
-                trip.robot, trip.outcome, trip.origin, trip.site, trip.end,
-                trip.departed, trip.ended, trip.path, trip.energy,
-            ),
-            array("d", [battery.charge for battery in drained]).tobytes(),
-        )  # fmt: skip
+        charges = array("d", [battery.charge for battery in drained]).tobytes()
+        self._note("ended", event.id, FLAT_TRIP(trip), charges)
 
     def run_ended(self, summary: Summary) -> None:
         """Keep the summary with the recording, but for what differs from run to run."""

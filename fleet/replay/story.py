@@ -11,23 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment
-from fleet.replay.journal import Scene, Told
+from fleet.replay.journal import Scene, Told, TripEnd
 from fleet.replay.stream import Stream
 from protocols.messages import Point, RobotId
-
-
-class TripEnd(NamedTuple):
-    """A trip, as :class:`fleet.motion.Trip` has it."""
-
-    robot: RobotId
-    outcome: str
-    origin: Point  # [m]
-    site: Point  # [m]
-    end: Point  # [m]
-    departed: float  # [s]
-    ended: float  # [s]
-    path: float  # [m]
-    energy: float  # [J]
 
 
 class UnderWay(NamedTuple):

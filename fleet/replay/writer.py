@@ -14,8 +14,8 @@ from typing import IO, Any
 import numpy as np
 
 from fleet.replay.columns import Moment
-from fleet.replay.journal import Batch, Told, receive
-from fleet.replay.story import Conversation, Page, Story, TripEnd, UnderWay
+from fleet.replay.journal import Batch, Told, TripEnd, receive
+from fleet.replay.story import Conversation, Page, Story, UnderWay
 from fleet.replay.stream import Stream
 from protocols.messages import Point, RobotId
 

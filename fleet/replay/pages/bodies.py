@@ -7,6 +7,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, colours, column, own, pairs, reals, segments, texts
+from fleet.replay.journal import TripEnd
 from fleet.replay.pages.frames import Frames, Poses, frames, joined, still
 from fleet.replay.scheme import (
     DEAD,
@@ -16,7 +17,7 @@ from fleet.replay.scheme import (
     ROBOTS,
 )
 from fleet.replay.shades import shade
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
 

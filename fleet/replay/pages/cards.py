@@ -7,9 +7,9 @@ from math import dist
 import rerun as rr
 
 from fleet.replay.columns import Moment, column, texts
-from fleet.replay.journal import Told
+from fleet.replay.journal import Told, TripEnd
 from fleet.replay.scheme import CARD
-from fleet.replay.story import Conversation, Page, Story, TripEnd
+from fleet.replay.story import Conversation, Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
 

@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, column, doubles
-from fleet.replay.journal import Told
+from fleet.replay.journal import Told, TripEnd
 from fleet.replay.scheme import (
     COMPONENTS,
     EVENT_COLOUR,
@@ -25,7 +25,7 @@ from fleet.replay.scheme import (
     UDG_COLOUR,
     WINNER_COLOUR,
 )
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import KINDS, RobotId
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from fleet.replay.columns import Moment, column, segments
+from fleet.replay.journal import TripEnd
 from fleet.replay.scheme import (
     ENDS,
     ENERGY_MAP,
@@ -25,7 +26,7 @@ from fleet.replay.scheme import (
     TEXT_COLOUR,
 )
 from fleet.replay.shades import TABLE, levels, shade
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 
 MAP_WIDTH, MAP_HEIGHT = 200.0, 80.0  # of the plane that the energy map is drawn on

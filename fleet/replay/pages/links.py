@@ -11,6 +11,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Index, Moment, column, doubles, segments
+from fleet.replay.journal import TripEnd
 from fleet.replay.pages.frames import Poses, frames
 from fleet.replay.pages.network import (
     Codes,
@@ -25,7 +26,7 @@ from fleet.replay.pages.network import (
     without,
 )
 from fleet.replay.scheme import COMPONENTS, LINK_COUNT, ROUTING, UDG
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
 from protocols.topology import GraphName

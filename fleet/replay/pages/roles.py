@@ -6,7 +6,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, pairs, texts
-from fleet.replay.journal import Told
+from fleet.replay.journal import Told, TripEnd
 from fleet.replay.pages.labels import Labels
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
@@ -17,7 +17,7 @@ from fleet.replay.scheme import (
     SOURCE_COLOUR,
     WINNER_TEXT,
 )
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import Point, RobotId
 

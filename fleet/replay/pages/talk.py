@@ -10,7 +10,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, colours, column, pairs
-from fleet.replay.journal import Told
+from fleet.replay.journal import Told, TripEnd
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
     CALLED_COLOUR,
@@ -24,7 +24,7 @@ from fleet.replay.scheme import (
     kind_colour,
     messages,
 )
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import KINDS, RobotId
 

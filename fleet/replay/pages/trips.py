@@ -9,8 +9,9 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, column, segments, strips
+from fleet.replay.journal import TripEnd
 from fleet.replay.scheme import DRIVEN, STRAIGHT
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
 

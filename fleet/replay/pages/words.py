@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, texts
-from fleet.replay.journal import Told
+from fleet.replay.journal import Told, TripEnd
 from fleet.replay.scheme import (
     EVENT_COLOUR,
     KIND_COLOURS,
@@ -21,7 +21,7 @@ from fleet.replay.scheme import (
     WINNER_TEXT,
     kind_colour,
 )
-from fleet.replay.story import Page, Story, TripEnd
+from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
 
