@@ -13,7 +13,9 @@ import os
 import subprocess
 import sys
 import tempfile
-from math import atan2, copysign, cos, dist, hypot, inf, pi, remainder, sin, sqrt, tau
+from functools import cache
+from math import atan2, copysign, cos, hypot, inf, pi, remainder, sin, sqrt, tau
+from pathlib import Path
 from statistics import median
 from time import process_time
 
@@ -36,16 +38,25 @@ ROBOTS = 100
 SPEC = RobotSpec(capacity=1e6)
 
 
-def tasks(seed):
-    """Where everybody starts, and where they are wanted."""
+def start(seed):
+    """Where everybody starts: points (n, 2) [m] and headings (n,) [rad]."""
     rng = np.random.default_rng(seed)
-    points = scatter(Arena(), ROBOTS, SPEC.radius, rng)
-    return points, rng.uniform(-pi, pi, ROBOTS), rng.uniform(0.0, 10.0, (TASKS, 2))
+    return scatter(Arena(), ROBOTS, SPEC.radius, rng), rng.uniform(-pi, pi, ROBOTS)
 
 
-def third_nearest(points, site):
-    """The robot that a task is for."""
-    return int(np.argpartition(((points - site) ** 2).sum(axis=1), 2)[2])
+@cache
+def tasks(seed):
+    """Who goes where: the third nearest robot to each of so many random sites."""
+    points, headings = start(seed)
+    motion, robots = fleet(points, headings, Arena(), engine=False)
+    found = []
+    for site in np.random.default_rng([seed, 1]).uniform(0.0, 10.0, (TASKS, 2)):
+        robot = int(np.argpartition(((points - site) ** 2).sum(axis=1), 2)[2])
+        found.append((robot, (float(site[0]), float(site[1]))))
+        motion.depart(robots[robot], found[-1][1])
+        (trip,) = motion.advance(inf)
+        points[robot] = trip.end
+    return found
 
 
 def fleet(points, headings, arena, engine, options=None):
@@ -61,18 +72,16 @@ def fleet(points, headings, arena, engine, options=None):
 
 def lifetime(seed, *, engine):
     """Drive it here: (CPU time [s], steps, energy [J])."""
-    points, headings, sites = tasks(seed)
-    start = process_time()
+    (points, headings), wanted = start(seed), tasks(seed)
+    began = process_time()
     motion, robots = fleet(points, headings, Arena(), engine)
     steps, energy = 0, 0.0
-    for site in sites:
-        robot = third_nearest(points, site)
-        motion.depart(robots[robot], (float(site[0]), float(site[1])))
+    for robot, site in wanted:
+        motion.depart(robots[robot], site)
         (trip,) = motion.advance(inf)
-        points[robot] = trip.end
         steps += trip.steps
         energy += trip.energy
-    return process_time() - start, steps, energy
+    return process_time() - began, steps, energy
 
 
 class PlainWorld:
@@ -89,7 +98,12 @@ class PlainWorld:
             circle.mass = SPEC.mass
             self.space.add(body, circle)
             self.bodies.append(body)
-        for a, b in (((0, 0), (10, 0)), ((10, 0), (10, 10)), ((10, 10), (0, 10)), ((0, 10), (0, 0))):
+        for a, b in (
+            ((0, 0), (10, 0)),
+            ((10, 0), (10, 10)),
+            ((10, 10), (0, 10)),
+            ((0, 10), (0, 0)),
+        ):
             self.space.add(pymunk.Segment(self.space.static_body, a, b, 0.0))
 
     def drive(self, robot, pieces):
@@ -155,27 +169,25 @@ def locate(piece, position):
 
 
 def plain_lifetime(seed, share):
-    """The first ``share`` tasks by the plain program: (CPU time of all [s], of them steps)."""
-    points, headings, sites = tasks(seed)
-    start = process_time()
+    """The same by the plain program, from its first ``share`` tasks."""
+    (points, headings), wanted = start(seed), tasks(seed)
+    began = process_time()
     world = PlainWorld(points, headings)
-    built = process_time() - start
-    planner = Planner(Arena(), SPEC.radius, [(x, y) for x, y in points.tolist()], (0.03, 0.001))
-    start, steps, energy = process_time(), 0, 0.0
-    for site in sites[:share]:
-        robot = third_nearest(points, site)
-        here = (float(points[robot, 0]), float(points[robot, 1]))
-        plan = planner.plan(robot, here, (float(site[0]), float(site[1])))
+    built = process_time() - began
+    places = [(x, y) for x, y in points.tolist()]
+    planner = Planner(Arena(), SPEC.radius, places, DriveOptions().clearances)
+    began, steps, energy = process_time(), 0, 0.0
+    for robot, site in wanted[:share]:
+        plan = planner.plan(robot, places[robot], site)
         names = plan.pieces.dtype.names
         pieces = [dict(zip(names, piece.tolist(), strict=True)) for piece in plan.pieces]
-        if pieces:
-            made, drained = world.drive(robot, pieces)
-            steps += made
-            energy += drained
-        points[robot] = world.bodies[robot].position
-        planner.rest(robot, (float(points[robot, 0]), float(points[robot, 1])))
-    took = (process_time() - start) * TASKS / share
-    return built + took, steps * TASKS / share, energy * TASKS / share
+        made, drained = world.drive(robot, pieces)
+        steps += made
+        energy += drained
+        places[robot] = tuple(world.bodies[robot].position)
+        planner.rest(robot, places[robot])
+    took = process_time() - began
+    return built + took * TASKS / share, steps * TASKS / share, energy * TASKS / share
 
 
 @kernel
@@ -186,21 +198,20 @@ def _step_alone(calls, steps, dt):
 
 def bare_steps(steps):
     """The engine alone, one body moving among the parked: CPU time of so many steps [s]."""
-    points, headings, _ = tasks(0)
-    world = PlainWorld(points, headings)
+    world = PlainWorld(*start(0))
     world.bodies[0].body_type = pymunk.Body.DYNAMIC
     world.bodies[0].velocity = (1e-6, 0.0)
     wires, _keep = connect(world.space, world.bodies)
     _step_alone(wires.calls, 1, DT)
-    start = process_time()
+    began = process_time()
     _step_alone(wires.calls, steps, DT)
-    return process_time() - start
+    return process_time() - began
 
 
 def everybody(count, *, engine, seconds=20.0):
     """All ``count`` robots drive all the time, at one robot a square metre.
 
-    Returns CPU time for 0.1 s [s]: in all, of it driving, of it sending; and how many were sent.
+    Returns CPU time for 0.1 s [s]: of driving, and of sending; and how many were sent.
     """
     side = sqrt(count)
     arena, rng = Arena(side, side), np.random.default_rng(3)
@@ -209,37 +220,34 @@ def everybody(count, *, engine, seconds=20.0):
     driving = sending = 0.0
     sent, idle, ticks = 0, list(robots), 0
     while ticks < 10 * seconds:
-        start = process_time()
+        began = process_time()
         for robot in idle:
             way, turn = rng.uniform(1.0, 4.0), rng.uniform(-pi, pi)
             x = min(max(robot.position[0] + way * cos(turn), 0.2), side - 0.2)
             y = min(max(robot.position[1] + way * sin(turn), 0.2), side - 0.2)
             motion.depart(robot, (x, y))
         middle = process_time()
+        trips = motion.advance(0.1 * (ticks + 1))
         if ticks >= 20:  # past the rush of the start
             sent += len(idle)
-            sending += middle - start
-        idle = [robots[trip.robot] for trip in motion.advance(0.1 * (ticks + 1))]
-        if ticks >= 20:
+            sending += middle - began
             driving += process_time() - middle
-        if not idle:
+        idle = [robots[trip.robot] for trip in trips if trip.outcome != "no path"]
+        if not trips:
             ticks += 1
     parts = 10.0 * seconds - 20
-    return (driving + sending) / parts, driving / parts, sending / parts, sent / parts
+    return driving / parts, sending / parts, sent / parts
 
 
 def start_up():
     """Seconds until the first trip of a process, compiling and from the cache."""
-    code = (
-        "from benchmarks_motion import lifetime" if False else
-        "import sys; sys.path.insert(0, sys.argv[1]); import motion; motion.first_trip()"
-    )
-    here = os.path.dirname(os.path.abspath(__file__))
+    here = Path(__file__).parent
+    code = f"import sys; sys.path.insert(0, {str(here)!r}); import motion; motion.first_trip()"
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
         for label in ("compiling", "from the cache"):
             run = subprocess.run(
-                [sys.executable, "-c", code, here],
+                [sys.executable, "-c", code],
                 env=environment, capture_output=True, text=True, check=True,
             )  # fmt: skip
             print(f"  first trip, {label:16s} {float(run.stdout):6.2f} s")
@@ -247,41 +255,43 @@ def start_up():
 
 def first_trip():
     """Print the CPU time of one trip in physics, imports excluded."""
-    start = process_time()
-    motion, robots = fleet(*tasks(0)[:2], Arena(), engine=True)
+    began = process_time()
+    motion, robots = fleet(*start(0), Arena(), engine=True)
     motion.depart(robots[0], (5.0, 5.0))
     motion.advance(inf)
-    print(process_time() - start)
+    print(process_time() - began)
 
 
 def main():
+    """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--repeat", type=int, default=9)
-    repeat = parser.parse_args().repeat
+    parser.add_argument("--repeat", type=int, default=9, help="lifetimes of each kind")
+    seeds = range(parser.parse_args().repeat)
     for engine in (True, False):
         lifetime(0, engine=engine)
-    physics, path = ([lifetime(s, engine=e) for s in range(repeat)] for e in (True, False))
+    physics, path = ([lifetime(s, engine=e) for s in seeds] for e in (True, False))
     assert [run[1:] for run in physics] == [run[1:] for run in path]
-    ours, without = (median(run[0] for run in runs) for runs in (physics, path))
-    steps = median(run[1] for run in physics)
     plain = [plain_lifetime(seed, 60) for seed in range(3)]
-    slow = median(run[0] for run in plain)
-    floor = min(bare_steps(int(steps)) for _ in range(5))
-    print(f"one lifetime: {TASKS} tasks, {steps:.0f} steps")
-    print(f"  physics                {ours * 1e3:8.1f} ms  {1.0 / ours:6.1f} a second")
-    print(f"  path                   {without * 1e3:8.1f} ms  {ours / without:6.2f} x physics")
-    print(f"  plain pymunk           {slow * 1e3:8.1f} ms  physics is {slow / ours:5.1f} x as fast")
-    print(f"  the engine's steps     {floor * 1e3:8.1f} ms  physics has {floor / ours:5.2f} of that speed")
-    gap = median(run[2] for run in plain) / median(run[2] for run in physics[:3]) - 1.0
-    print(f"  energy, plain against physics: {gap:+.1%}")
+    ours, without, slow = (median(run[0] for run in runs) for runs in (physics, path, plain))
+    steps = int(median(run[1] for run in physics))
+    floor = min(bare_steps(steps) for _ in range(5))
+    print(f"one lifetime: {TASKS} tasks, {steps} steps")
+    print(f"  physics             {ours * 1e3:8.1f} ms {1.0 / ours:7.1f} a second")
+    print(
+        f"  path                {without * 1e3:8.1f} ms {ours / without:7.2f} x as fast as physics"
+    )
+    print(f"  plain pymunk        {slow * 1e3:8.1f} ms; physics is {slow / ours:.1f} x as fast")
+    print(
+        f"  the engine's steps  {floor * 1e3:8.1f} ms; physics has {floor / ours:.2f} of that speed"
+    )
     print("everybody drives, CPU time for 0.1 s:")
     for count in (100, 1000):
         for engine in (False, True):
-            total, driving, sending, sent = everybody(count, engine=engine)
-            name = "physics" if engine else "path"
+            driving, sending, sent = everybody(count, engine=engine)
             print(
-                f"  {count:5d} robots, {name:8s} {total * 1e6:7.0f} us: driving"
-                f" {driving * 1e6:6.0f}, sending {sent:4.1f} robots {sending * 1e6:6.0f}"
+                f"  {count:5d} robots, {'physics' if engine else 'path':8s}"
+                f" driving {driving * 1e6:6.0f} us, sending {sent:4.1f} robots"
+                f" {sending * 1e6:6.0f} us"
             )
     print("starting:")
     start_up()

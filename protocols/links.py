@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 DENSE_UP_TO = 1000  # robots for which all distances at once are quicker than a tree
-RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one
+RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one,
+BESIDE = 1e-16  # but not for robots so much nearer to one end (squared): both would yield
 
 
 def unit_disc(positions: NDArray[np.float64], radio_range: float) -> NDArray[np.intp]:
@@ -78,12 +79,12 @@ def _blocked(
     vx, vy = (positions[v, axis] - positions[w, axis] for axis in (0, 1))
     uw, vw = ux * ux + uy * uy, vx * vx + vy * vy
     at_u, at_v = uw == 0.0, vw == 0.0
+    dot = ux * vx + uy * vy
+    near_right = dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
+    between = (dot <= 0.0) | (near_right & (uw > BESIDE * vw) & (vw > BESIDE * uw))
     if lune:
         uv = ((positions[u] - positions[v]) ** 2).sum(axis=2)
-        between = (uw < uv) & (vw < uv)
-    else:
-        dot = ux * vx + uy * vy
-        between = (dot <= 0.0) | (dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw)
+        between |= (uw < uv) & (vw < uv)
     first = np.where(at_u & at_v, np.minimum(u, v), np.where(at_u, u, v))
     between = np.where(at_u | at_v, w < first, between)
     blocked[~blocked] = (between & (w != u) & (w != v)).any(axis=1)

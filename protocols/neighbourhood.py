@@ -11,7 +11,7 @@ import numpy as np
 
 from protocols.cells import Cells
 from protocols.messages import Point, RobotId
-from protocols.relink import GABRIEL, RNG, UDG, relink
+from protocols.relink import GABRIEL, RNG, UDG, relink, relink_all
 
 GRAPHS = {"udg": UDG, "gabriel": GABRIEL, "rng": RNG}
 
@@ -27,8 +27,7 @@ class Neighbourhood:
         self._degree = np.zeros(n, np.int64)
         self._links = np.zeros((n, 16), np.int64)
         self._changed = np.zeros(n + 1, np.int64)
-        for robot, position in enumerate(positions):
-            self.move(robot, position)
+        self.move_all(range(n), positions)
 
     def of(self, robot: RobotId) -> list[RobotId]:
         """The robot's neighbours, ascending."""
@@ -37,7 +36,7 @@ class Neighbourhood:
         return listed
 
     def move(self, robot: RobotId, position: Point) -> list[RobotId]:
-        """Relink; returns the robots whose neighbours differ now, the moved one first."""
+        """Relink; returns the moved robot, its neighbours, and all whose links differ now."""
         cells = self._cells
         while True:
             changes = relink(
@@ -49,4 +48,26 @@ class Neighbourhood:
             if changes >= 0:
                 changed: list[RobotId] = self._changed[:changes].tolist()
                 return changed
-            self._links = np.hstack([self._links, np.zeros_like(self._links)])
+            self._widen()
+
+    def move_all(self, robots: Sequence[RobotId], positions: Sequence[Point]) -> list[RobotId]:
+        """Relink them all, one after another; returns as :meth:`move` does, each once."""
+        cells = self._cells
+        ids, places = np.array(robots, np.int64), np.array(positions, float).reshape(-1, 2)
+        dirty = np.zeros(len(self._degree), np.bool_)
+        done = 0
+        while True:
+            done = relink_all(
+                done, ids, places, self._graph, self._range,
+                cells.x, cells.y, self._links, self._degree,
+                cells.head, cells.after, cells.grid,
+                cells.marked, cells.near, self._changed, dirty,
+            )  # fmt: skip
+            if done == len(ids):
+                touched: list[RobotId] = np.flatnonzero(dirty).tolist()
+                return touched
+            self._widen()
+
+    def _widen(self) -> None:
+        """Room for twice as many links a robot."""
+        self._links = np.hstack([self._links, np.zeros_like(self._links)])

@@ -17,7 +17,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 
 UDG, GABRIEL, RNG = 0, 1, 2
-RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one
+RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one,
+BESIDE = 1e-16  # but not for robots so much nearer to one end (squared): both would yield
 
 
 @kernel
@@ -33,9 +34,12 @@ def blocks(graph, w, u, v, wx, wy, ux, uy, vx, vy):
         return w < u
     if vw == 0.0:
         return w < v
+    dot = (ux - wx) * (vx - wx) + (uy - wy) * (vy - wy)
+    near_right = dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
+    if dot <= 0.0 or (near_right and uw > BESIDE * vw and vw > BESIDE * uw):
+        return True  # in the diametral disc, and so in the lune
     if graph == GABRIEL:
-        dot = (ux - wx) * (vx - wx) + (uy - wy) * (vy - wy)
-        return dot <= 0.0 or dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
+        return False
     uv = (ux - vx) * (ux - vx) + (uy - vy) * (uy - vy)
     return uw < uv and vw < uv
 
@@ -154,8 +158,8 @@ def relink(
     ``px, py``: (n,) positions [m]; ``links`` (n, capacity) and ``degree`` (n,): adjacency;
     ``head`` (cells,), ``after`` (n,) and ``grid`` [x0, y0, size, columns, rows]: the robots of
     each cell as a linked list; ``marked`` (n,) all false, ``near`` (n,) and ``changed`` (n,):
-    work space. Returns how many robots' links differ now, listed in ``changed``; -1 if
-    ``links`` has too little room, then nothing has been changed.
+    work space. Returns the number of robots in ``changed``: the moved one, its neighbours, and
+    all whose links differ now; -1 if ``links`` has too little room, then nothing was changed.
 
     A link can only open or close between robots within reach of where the robot was or is:
     for the Gabriel graph the range, since whoever stands in a diametral disc is within its
@@ -214,3 +218,39 @@ def relink(
             changed[changes] = near[k]
             changes += 1
     return changes
+
+
+@kernel
+def relink_all(
+    start: int,
+    robots: IntArray,
+    places: FloatArray,
+    graph: int,
+    radio_range: float,
+    px: FloatArray,
+    py: FloatArray,
+    links: IntArray,
+    degree: IntArray,
+    head: IntArray,
+    after: IntArray,
+    grid: FloatArray,
+    marked: NDArray[np.bool_],
+    near: IntArray,
+    changed: IntArray,
+    dirty: NDArray[np.bool_],
+) -> int:
+    """As :func:`relink`, for ``robots`` (k,) from index ``start`` on, to ``places`` (k, 2) [m].
+
+    Sets ``dirty`` (n,) for all whose links, or whose neighbours' places, differ now. Returns
+    the index of the robot for which ``links`` has too little room; k if there was none.
+    """
+    for k in range(start, len(robots)):
+        changes = relink(
+            robots[k], places[k, 0], places[k, 1], graph, radio_range, px, py, links, degree,
+            head, after, grid, marked, near, changed,
+        )  # fmt: skip
+        if changes < 0:
+            return k
+        for j in range(changes):
+            dirty[changed[j]] = True
+    return len(robots)

@@ -15,14 +15,17 @@ within 1e-9 rad, and of robots in one place the lowest id keeps the links.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Literal, TypeAlias, get_args
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from protocols.links import gabriel, relative_neighbourhood, spanning_tree, unit_disc
 from protocols.messages import Point, RobotId
+
+if TYPE_CHECKING:
+    from protocols.neighbourhood import Neighbourhood
 
 GraphName = Literal["gabriel", "udg", "rng", "emst"]
 Edges: TypeAlias = NDArray[np.intp]  # (m, 2), u < v
@@ -46,7 +49,7 @@ class Topology:
     """The routing graph over a fleet in the plane, changed robot by robot.
 
     ``neighbours[robot]`` maps the ids of its neighbours, ascending, to their positions [m].
-    The list stays the same object; its mappings are replaced, not changed, so one that was
+    The sequence stays the same object; its mappings are replaced, not changed, so one that was
     read stays as it was.
 
     With ``compiled`` a moved robot costs time by the size of its neighbourhood, whatever the
@@ -73,14 +76,13 @@ class Topology:
         self.radio_range = radio_range
         self.graph = graph
         self.positions: list[Point] = list(positions)
-        self.neighbours: list[Mapping[RobotId, Point]] = [{} for _ in positions]
-        self._links = None
+        self._links: Neighbourhood | None = None
+        self.neighbours = Tables(self.positions)
         if compiled and graph != "emst":
             from protocols.neighbourhood import Neighbourhood
 
             self._links = Neighbourhood(self.positions, radio_range, graph)
-            for robot in range(len(self.positions)):
-                self._list_neighbours(robot)
+            self.neighbours.read_from(self._links.of)
         else:
             self._rebuild()
 
@@ -89,11 +91,17 @@ class Topology:
         self.positions[robot] = position
         if self._links is None:
             self._rebuild()
-            return
-        for touched in self._links.move(robot, position):
-            self._list_neighbours(touched)
-        for neighbour in self.neighbours[robot]:
-            self._list_neighbours(neighbour)
+        else:
+            self.neighbours.forget(self._links.move(robot, position))
+
+    def move_all(self, robots: Sequence[RobotId], positions: Sequence[Point]) -> None:
+        """The robots are at ``positions`` [m] now, all at once."""
+        for robot, position in zip(robots, positions, strict=True):
+            self.positions[robot] = position
+        if self._links is None:
+            self._rebuild()
+        else:
+            self.neighbours.forget(self._links.move_all(robots, positions))
 
     def remove(self, robot: RobotId) -> None:
         """The robot is off the air: nobody hears it any more."""
@@ -104,15 +112,47 @@ class Topology:
         listed = [(u, v) for u, near in enumerate(self.neighbours) for v in near if u < v]
         return np.array(listed, dtype=np.intp).reshape(-1, 2)
 
-    def _list_neighbours(self, robot: RobotId) -> None:
-        positions = self.positions
-        assert self._links is not None
-        self.neighbours[robot] = {v: positions[v] for v in self._links.of(robot)}
-
     def _rebuild(self) -> None:
         near: list[list[RobotId]] = [[] for _ in self.positions]
         for u, v in edges(np.array(self.positions), self.radio_range, self.graph).tolist():
             near[u].append(v)
             near[v].append(u)
-        positions = self.positions
-        self.neighbours[:] = [{v: positions[v] for v in sorted(of)} for of in near]
+        self.neighbours.forget(range(len(near)))
+        self.neighbours.read_from(lambda robot: sorted(near[robot]))
+
+
+class Tables(Sequence[Mapping[RobotId, Point]]):
+    """Neighbours and their positions by robot, each listed when it is first looked at."""
+
+    def __init__(self, positions: list[Point]) -> None:
+        self._positions = positions
+        self._listed: list[Mapping[RobotId, Point] | None] = [None] * len(positions)
+        self._of: Callable[[RobotId], Iterable[RobotId]] = lambda _: ()
+
+    def read_from(self, neighbours_of: Callable[[RobotId], Iterable[RobotId]]) -> None:
+        """Where to ask for the neighbours of a robot, ascending."""
+        self._of = neighbours_of
+
+    def forget(self, robots: Iterable[RobotId]) -> None:
+        """These robots' neighbours, or where those are, have changed."""
+        listed = self._listed
+        for robot in robots:
+            listed[robot] = None
+
+    @overload
+    def __getitem__(self, robot: int) -> Mapping[RobotId, Point]: ...
+    @overload
+    def __getitem__(self, robot: slice) -> list[Mapping[RobotId, Point]]: ...
+    def __getitem__(
+        self, robot: int | slice
+    ) -> Mapping[RobotId, Point] | list[Mapping[RobotId, Point]]:
+        if isinstance(robot, slice):
+            return [self[k] for k in range(len(self))[robot]]
+        near = self._listed[robot]
+        if near is None:
+            positions = self._positions
+            near = self._listed[robot] = {v: positions[v] for v in self._of(robot)}
+        return near
+
+    def __len__(self) -> int:
+        return len(self._listed)

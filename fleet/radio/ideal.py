@@ -25,9 +25,12 @@ class IdealRadio:
 
     def refresh(self, moved: Iterable[Robot], time: float) -> None:
         """Bring the links up to date with robots that moved."""
-        for robot in moved:
-            if robot.on_air:
-                self._topology.move(robot.id, robot.position)
+        heard = [robot for robot in moved if robot.on_air]
+        if len(heard) == 1:
+            self._topology.move(heard[0].id, heard[0].position)
+        elif heard:
+            ids, positions = [robot.id for robot in heard], [robot.position for robot in heard]
+            self._topology.move_all(ids, positions)
 
     def silence(self, robot: Robot) -> None:
         """Nobody hears the robot any more."""

@@ -15,7 +15,8 @@ from protocols.geometry import crossing
 from protocols.topology import NOWHERE, Topology, edges
 
 LOCAL = ("udg", "gabriel", "rng")
-COS = 1e-9  # of an angle that counts as right
+COS = 1e-9  # of an angle that counts as right,
+BESIDE = 1e-16  # but not right beside an end (squared)
 
 
 def by_definition(points, radio_range, graph):
@@ -41,10 +42,10 @@ def stands_between(points, graph, u, v, w, uv):
             return w < min(u, v)
         return w < (u if points[w] == points[u] else v)
     uw, vw = (ux - wx) ** 2 + (uy - wy) ** 2, (vx - wx) ** 2 + (vy - wy) ** 2
-    if graph == "rng":
-        return max(uw, vw) < uv
     dot = (ux - wx) * (vx - wx) + (uy - wy) * (vy - wy)
-    return dot <= 0.0 or dot**2 <= COS**2 * uw * vw
+    beside = uw <= BESIDE * vw or vw <= BESIDE * uw
+    in_disc = dot <= 0.0 or (dot * dot <= COS * COS * uw * vw and not beside)
+    return in_disc or (graph == "rng" and max(uw, vw) < uv)
 
 
 def listed(topology):
@@ -59,6 +60,7 @@ def listed(topology):
 
 coordinate = {
     "anywhere": st.floats(0.0, 10.0).map(lambda v: round(v, 9)),  # a nanometre is a place
+    "beside": st.integers(0, 3).map(lambda k: 1e-9 * k),
     "lattice": st.integers(0, 6).map(lambda k: 0.3 * k),
     "three places": st.sampled_from([0.0, 1.0, 2.5]),
 }
@@ -169,6 +171,21 @@ def test_large_fleets_agree_with_the_definition_too():
         live.move(robot, random_points(1, 38.7, rng)[0])
     whole = edges(np.array(live.positions), 2.5, "gabriel").tolist()
     assert listed(live) == {tuple(e) for e in whole}
+
+
+@pytest.mark.parametrize("graph", ["gabriel", "udg", "emst"])
+@pytest.mark.parametrize("compiled", [True, False])
+def test_moving_all_at_once_is_moving_one_by_one(graph, compiled):
+    rng = np.random.default_rng(9)
+    start = random_points(60, 6.0, rng)
+    one, all_ = (Topology(start, 2.0, graph, compiled=compiled) for _ in range(2))
+    for _ in range(10):
+        robots = rng.choice(60, 20, replace=False).tolist()
+        places = random_points(20, 3.0, rng)  # closer, so that there must be more room for links
+        for robot, place in zip(robots, places, strict=True):
+            one.move(robot, place)
+        all_.move_all(robots, places)
+        assert [dict(t) for t in all_.neighbours] == [dict(t) for t in one.neighbours]
 
 
 def test_a_robot_that_leaves_the_air_is_forgotten():
