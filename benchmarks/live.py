@@ -68,7 +68,8 @@ def main() -> None:
             )  # fmt: skip
             driving = busy.driven / (n * duration)
             print(
-                f"  {n:6} robots, {motion:7}: {10 * fast:7.0f} steps, {10 * fast / ARGOS[n]:5.1f} ×;"
+                f"  {n:6} robots, {motion:7}: {10 * fast:7.0f} steps,"
+                f" {10 * fast / ARGOS[n]:5.1f} ×;"
                 f" {driving:.0%} of them under way, {summary.messages / duration:.0f} messages/s"
             )
 

@@ -12,6 +12,8 @@ import numpy as np
 from worlds import events
 from worlds.arena import Arena, FloatArray, given, scatter
 from worlds.events import Occurrence
+from worlds.obstacles import round_pit, scatter_through, shelves, walls
+from worlds.occupancy import OccupancyGrid, obstacles
 from worlds.shapes import Corner, Disc, Polygon, square
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
@@ -64,6 +66,85 @@ def random_hole(
     return World(Arena(width, height, hole=Polygon(corners) if corners else hole))
 
 
+def pit(
+    *,
+    width: float = 10.0,
+    height: float = 10.0,
+    shape: Literal["disc", "square"] = "disc",
+    radius: float = 2.5,
+    sides: int = 32,
+) -> World:
+    """As random-hole, but robots must drive around the hole, and events fall beside it.
+
+    ``radius`` [m] is that of the disc, or half a side of the square. The disc is a polygon of
+    so many ``sides`` around it.
+    """
+    if not 0.0 < radius < 0.5 * min(width, height):
+        raise ValueError(
+            f"radius is {radius} m; expected more than 0, and less than half the"
+            f" {width} m × {height} m floor"
+        )
+    if sides < 3:
+        raise ValueError(f"sides is {sides}; expected 3 or more")
+    x, y = 0.5 * width, 0.5 * height
+    hole = round_pit(x, y, radius, sides) if shape == "disc" else square(x, y, radius)
+    beside = partial(scatter_through, min(width, height) / 2 - radius, "the way past the pit")
+    return World(Arena(width, height, obstacles=(hole,)), beside)
+
+
+def rooms(
+    *,
+    width: float = 10.0,
+    height: float = 10.0,
+    columns: int = 3,
+    rows: int = 3,
+    wall: float = 0.15,
+    door: float = 0.9,
+) -> World:
+    """Equal rooms; a door in the middle of every wall between two of them.
+
+    ``wall`` is the thickness of walls, ``door`` the width of doors [m]. Radio passes walls.
+    """
+    if not wall > 0.0:
+        raise ValueError(f"wall is {wall} m; expected more than 0")
+    standing = walls(width, height, columns, rows, wall, door)
+    return World(Arena(width, height, obstacles=standing), partial(scatter_through, door, "a door"))
+
+
+def warehouse(
+    *,
+    columns: int = 3,
+    rows: int = 5,
+    length: float = 2.0,
+    depth: float = 0.8,
+    aisle: float = 1.0,
+) -> World:
+    """Rows of shelves with aisles between and around them.
+
+    A shelf is ``length`` × ``depth``, an ``aisle`` so wide [m]; the floor is as large as that
+    takes, 10 m × 10 m by default. Radio passes shelves.
+    """
+    width, height, found = shelves(columns, rows, length, depth, aisle)
+    return World(Arena(width, height, obstacles=found), partial(scatter_through, aisle, "an aisle"))
+
+
+def occupancy_map(
+    *,
+    file: OccupancyGrid,
+    unknown: Literal["occupied", "free"] = "occupied",
+    tolerance: float | None = None,
+) -> World:
+    """The floor of an occupancy map: a YAML file, and the image that it names.
+
+    ``file`` is as of ROS's map_server. ``unknown`` cells count as occupied, or as free; free
+    cells that are cut off from the largest free area count as occupied. Occupied cells become
+    polygons, which are larger by up to ``tolerance`` [m], one cell if it is not given: slanting
+    walls have fewer corners then. No way through opens, but doors may be narrower by twice as
+    much. The arena's (0, 0) is the lower left corner of the image. Radio passes walls.
+    """
+    return World(Arena(file.width, file.height, obstacles=obstacles(file, unknown, tolerance)))
+
+
 def placed(*, positions: FloatArray, width: float = 10.0, height: float = 10.0) -> World:
     """Robots start where a CSV file (columns x, y in metres) puts them; events fall anywhere."""
     if positions.shape[1] != 2:
@@ -81,9 +162,13 @@ def placed(*, positions: FloatArray, width: float = 10.0, height: float = 10.0) 
 
 
 WORLDS: dict[str, Entry] = {
+    "map": Entry(occupancy_map, "a file of the user's; wiki.ros.org/map_server"),
+    "pit": Entry(pit, f"{PAPER}; its hole as an obstacle"),
     "placed": Entry(placed, "a file of the user's"),
     "random": Entry(random, PAPER),
     "random-hole": Entry(random_hole, PAPER),
+    "rooms": Entry(rooms, "an office floor"),
+    "warehouse": Entry(warehouse, "a storage floor"),
 }
 
 EVENTS: dict[str, EventsEntry] = {

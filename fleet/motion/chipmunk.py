@@ -37,7 +37,7 @@ SIGNATURES = {
 STEP, READ, WRITE, SET_TYPE, SPACE, HEARD, TOLD = range(7)
 """Places in ``Wires.calls``."""
 
-DYNAMIC = 0  # cpBodyType of a body that moves
+DYNAMIC, STATIC = 0, 2  # cpBodyType of a body that moves, and of a parked one
 ROOM = 8  # numbers in a buffer
 
 
@@ -81,6 +81,12 @@ def wake_body(calls: Any, body: Any) -> None:
 
 
 @kernel
+def park_body(calls: Any, body: Any) -> None:
+    """Make a body that moves a parked one, at rest."""
+    _call_set_type(calls[SET_TYPE], body, np.int32(STATIC))
+
+
+@kernel
 def write_body(
     calls: Any, body: Any, numbers: Any, counts: Any, vx: Any, vy: Any, spin: Any
 ) -> None:
@@ -103,6 +109,7 @@ def _drive_alone(wires: Any, vx: Any, vy: Any, spin: Any, dt: Any) -> None:
     write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, vx, vy, spin)
     step_space(wires.calls, dt)
     read_body(wires.calls, wires.bodies[0], wires.counts)
+    park_body(wires.calls, wires.bodies[0])
 
 
 def disconnected() -> Wires:
@@ -153,7 +160,8 @@ def _check_signatures(ffi: Any, lib: Any) -> None:
         found = ffi.typeof(ffi.addressof(lib, name)).cname
         if found != signature:
             raise NoBridge(f"pymunk's {name} is {found}; expected {signature}")
-    if (lib.CP_BODY_TYPE_DYNAMIC, ffi.sizeof("enum cpBodyType")) != (DYNAMIC, 4):
+    types = (lib.CP_BODY_TYPE_DYNAMIC, lib.CP_BODY_TYPE_STATIC, ffi.sizeof("enum cpBodyType"))
+    if types != (DYNAMIC, STATIC, 4):
         raise NoBridge("pymunk numbers its body types in another way")
 
 
@@ -187,4 +195,5 @@ def trusted() -> bool:
     except NoBridge:
         return False
     _drive_alone(wires, *speed, spin, dt)
-    return tuple(wires.numbers[: len(expected)].tolist()) == expected
+    parked = body.body_type == pymunk.Body.STATIC
+    return parked and tuple(wires.numbers[: len(expected)].tolist()) == expected

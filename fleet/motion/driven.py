@@ -3,7 +3,7 @@
 With an engine, bodies move in a physics space; without, they go where they are commanded to.
 Both run the same compiled loop and agree to the bit as long as nothing touches.
 
-Importing this module loads numba.
+Importing this module loads numba; pymunk is loaded only for an engine.
 """
 
 from __future__ import annotations
@@ -11,23 +11,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import dist, floor, inf
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fleet.energy import Battery
 from fleet.motion import Outcome, Trip
-from fleet.motion.engine import Engine
 from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
 from fleet.motion.law import fine_substeps, law_of
-from fleet.motion.movers import Movers
+from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
 from fleet.motion.planning import Planner
 from fleet.motion.rest import Rest
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
+
+if TYPE_CHECKING:
+    from fleet.motion.engine import Engine
 
 SAME_PLACE = 1e-6  # [m]
 
@@ -102,14 +104,15 @@ class DrivenMotion:
         points = [robot.position for robot in robots]
         ladder = self.options.ladder(self.spec)
         self._planner = Planner(self._arena, self.spec.radius, points, ladder)
-        self._engine = (
-            Engine(self._arena, self.spec, robots, bridge=self.options.bridge)
-            if self._with_engine
-            else None
-        )
+        self._engine = self._make_engine(robots) if self._with_engine else None
         self._movers = Movers(self._law, self._planner.floor, self._engine)
         self._facing = [robot.heading for robot in robots]  # [rad], not wrapped
         self._rested = Rest(robots, self.spec.extra.idle * self.options.dt)
+
+    def _make_engine(self, robots: Sequence[Robot]) -> Engine:
+        from fleet.motion.engine import Engine
+
+        return Engine(self._arena, self.spec, robots, bridge=self.options.bridge)
 
     def cost(self, robot: Robot, site: Point) -> float:
         """The energy that ``robot`` believes going to ``site`` [m] takes [J], by the options.
@@ -234,6 +237,7 @@ class DrivenMotion:
         for voyage in voyages:
             outcome = self._try_anew(voyage)
             if outcome is not None:
+                self._stand(voyage)
                 ended[self._voyages.index(voyage)] = outcome
         return ended
 
@@ -313,42 +317,39 @@ class DrivenMotion:
         for place, outcome in outcomes.items():
             voyage = self._voyages[place]
             robot = voyage.robot
-            state = self._movers.state(voyage.slot)
-            self._over.append(self._trip(voyage, outcome, state))
-            self._facing[robot.id] = state["heading"]
+            account = self._movers.account(voyage.slot)
+            self._over.append(self._trip(voyage, outcome, account))
+            self._facing[robot.id] = account.heading
             self._planner.rest(robot.id, robot.position)
             self._rested.since(robot, self._step)
-            if self._engine is not None:
-                self._engine.park(robot.id)
             self._under_way.discard(robot.id)
             self._stopping.discard(voyage.slot)
         self._movers.leave(list(outcomes))
         for place in sorted(outcomes, reverse=True):
             del self._voyages[place], self._robots[place], self._batteries[place]
 
-    def _trip(self, voyage: _Voyage, outcome: Outcome, state: dict[str, Any]) -> Trip:
+    def _trip(self, voyage: _Voyage, outcome: Outcome, account: Account) -> Trip:
         dt = self.options.dt
-        smooth = state["path"] - state["jostled"]
-        contact = state["spent_adrift"] - self._eq1 * state["jostled"]
-        driving = state["spent"] - state["spent_turning"] - state["spent_waiting"]
+        smooth = account.path - account.jostled
+        driving = account.spent - account.spent_turning - account.spent_waiting
         return Trip(
             voyage.robot.id,
             outcome,
             voyage.origin,
             voyage.site,
-            (state["x"], state["y"]),
+            (account.x, account.y),
             voyage.departed * dt,
             self.now,
-            state["path"],
-            state["spent"],
+            account.path,
+            account.spent,
             voyage.planned,
             dist(voyage.goal, voyage.site),
-            state["waited"] * dt,
-            state["steps"],
-            state["contacts"],
-            self._eq1 * state["path"],
-            driving - state["spent_adrift"] - self._eq1 * smooth,
-            state["spent_turning"],
-            state["spent_waiting"],
-            contact,
+            account.waited * dt,
+            account.steps,
+            account.contacts,
+            energy_path=self._eq1 * account.path,
+            energy_ramps=driving - account.spent_adrift - self._eq1 * smooth,
+            energy_pivots=account.spent_turning,
+            energy_waiting=account.spent_waiting,
+            energy_contact=account.spent_adrift - self._eq1 * account.jostled,
         )

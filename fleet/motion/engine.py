@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import pymunk
 
 from fleet.motion.chipmunk import connect, trusted
-from fleet.motion.kernels.records import IntArray, Records, Wires
+from fleet.motion.kernels.records import ARRIVED, EMPTY, IntArray, Records, Wires
 from fleet.robot import Robot, RobotSpec
 from worlds.arena import Arena
 from worlds.shapes import Corner
@@ -55,6 +55,14 @@ class Engine:
     def park(self, robot: int) -> None:
         """The robot rests: its body cannot be moved."""
         self.bodies[robot].body_type = pymunk.Body.STATIC
+
+    def park_those_over(self, movers: Records, active: IntArray) -> None:
+        """Park the robots whose trips have ended by themselves."""
+        for slot in active:
+            mover = movers[slot]
+            if mover["awake"] and ARRIVED <= mover["phase"] <= EMPTY:
+                mover["awake"] = 0
+                self.park(mover["robot"])
 
     def step(self, movers: Records, active: IntArray, dt: float, substeps: int) -> None:
         """Carry out the commands of the ``active`` movers for a step, by the public interface."""

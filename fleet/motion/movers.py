@@ -5,21 +5,44 @@ Importing this module loads numba.
 
 from __future__ import annotations
 
-from typing import Any
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
-from fleet.motion.engine import Engine
 from fleet.motion.kernels.records import MOVER, PIECE, Floor, Traffic
 from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
 from protocols.messages import Point, RobotId
 
+if TYPE_CHECKING:
+    from fleet.motion.engine import Engine
+
 Path = NDArray[Any]  # (k,) PIECE
 SLOW = 0.1  # [m/s] below this a robot counts as stopped
+
+
+class Account(NamedTuple):
+    """What has become of a robot under way: columns of :data:`kernels.records.MOVER`."""
+
+    x: float  # [m]
+    y: float
+    heading: float  # [rad], not wrapped
+    path: float  # [m]
+    jostled: float  # [m] of it
+    waited: int  # [steps]
+    steps: int
+    contacts: int
+    spent: float  # [J], of it:
+    spent_turning: float
+    spent_waiting: float
+    spent_adrift: float
+
+
+_ACCOUNT = itemgetter(*((MOVER.names or ()).index(name) for name in Account._fields))
 
 
 class Movers:
@@ -78,11 +101,10 @@ class Movers:
 
     def leave(self, places: list[int]) -> None:
         """The trips at these places in the order are over: their slots are free again."""
-        active = self._active
-        self._free.extend(active[places].tolist())
-        left = np.delete(active, places)
-        self._count = len(left)
-        self._slots[: len(left)] = left
+        for place in sorted(places, reverse=True):
+            self._free.append(int(self._slots[place]))
+            self._slots[place : self._count - 1] = self._slots[place + 1 : self._count]
+            self._count -= 1
 
     def advance(self, step: int, steps: int) -> tuple[int, list[int]]:
         """Drive on from ``step`` by ``steps`` at most.
@@ -106,9 +128,9 @@ class Movers:
         """Which phase of :mod:`fleet.motion.kernels.records` the trip is in."""
         return int(self.traffic.movers[slot]["phase"])
 
-    def state(self, slot: int) -> dict[str, Any]:
-        """Everything about one mover, by the names of :data:`kernels.records.MOVER`."""
-        return dict(zip(MOVER.names or (), self.traffic.movers[slot].tolist(), strict=True))
+    def account(self, slot: int) -> Account:
+        """What has become of one robot since its departure."""
+        return Account(*_ACCOUNT(self.traffic.movers[slot].tolist()))
 
     def samples(self) -> NDArray[np.float64]:
         """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`."""
@@ -122,7 +144,11 @@ class Movers:
 
     def stop_short(self, slot: int, step: int) -> None:
         """The robot brakes from ``step`` on."""
-        stop_short(self._floor, self.traffic, slot, step)
+        while True:
+            needed = stop_short(self._floor, self.traffic, slot, step)
+            if needed <= self.traffic.tracks.shape[1]:
+                return
+            self._more_knots(needed)
 
     def blocked_by(self, slot: int, step: int) -> list[int]:
         """The slots of those who will come too near to a robot that stands or stops."""
@@ -154,6 +180,7 @@ class Movers:
             if command(movers, pieces, law, self._active, step + made) > 0:
                 self._engine.step(movers, self._active, float(law["dt"]), int(law["substeps"]))
             over = settle(movers, law, self._active)
+            self._engine.park_those_over(movers, self._active)
             made += 1
             if law["sample"]:
                 kept = sample(movers, law, self._active, self._samples, kept, step + made)

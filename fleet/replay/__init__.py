@@ -1,7 +1,8 @@
 """Recordings of runs: written as Rerun files, watched live, opened, drawn, read back.
 
 Only this package knows Rerun, and loads it when it is needed: a run itself never does, for
-its recording is drawn by another process.
+its recording is drawn by another process. Recordings are looked at with ``view.view``, drawn
+with ``picture.picture`` and ``picture.clip``, and read with ``readback.Recording``.
 """
 
 from __future__ import annotations
@@ -10,19 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fleet.replay.picture import clip, picture
     from fleet.replay.recording import RerunRecorder
-    from fleet.replay.view import view
     from fleet.scenario.model import Scenario
 
-__all__ = ["RerunRecorder", "clip", "picture", "recorder", "view"]
-
-_HOMES = {
-    "RerunRecorder": "fleet.replay.recording",
-    "clip": "fleet.replay.picture",
-    "picture": "fleet.replay.picture",
-    "view": "fleet.replay.view",
-}
+__all__ = ["RerunRecorder", "recorder"]
 
 
 def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False) -> RerunRecorder:
@@ -48,9 +40,9 @@ def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False)
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is asked for when it is asked for."""
-    if name not in _HOMES:
+    """Load the recorder when it is asked for."""
+    if name != "RerunRecorder":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
+    from fleet.replay.recording import RerunRecorder
 
-    return getattr(import_module(_HOMES[name]), name)
+    return RerunRecorder

@@ -75,7 +75,7 @@ def _replay(stage: Stage, timeline: str) -> rrb.Container:
             rrb.Tabs(_card(stage), guide, active_tab=0),
             rrb.Tabs(_log(stage, decisions=True), _log(stage, decisions=False), active_tab=0),
             rrb.Tabs(_tree(stage), _messages(stage), trip, active_tab=0),
-            row_shares=[10, 4, 5],
+            row_shares=[17, 9, 10],
         ),
         column_shares=[57, 43],
         name="Replay",
@@ -138,8 +138,8 @@ def _world(stage: Stage) -> rrb.View:
 def _bounds(stage: Stage) -> rrb.VisualBounds2D:
     side = max(stage.width, stage.height)
     return rrb.VisualBounds2D(
-        x_range=[-0.06 * side, stage.width + 0.14 * side],
-        y_range=[-stage.height - 0.03 * side, 0.07 * side],
+        x_range=[-0.06 * side, stage.width + 0.15 * side],
+        y_range=[-stage.height - 0.03 * side, 0.085 * side],
     )
 
 

@@ -15,35 +15,33 @@ GRAPHS = {
 def guide(story: Story) -> str:
     """The text beside the picture, as Markdown."""
     scene = story.scene
-    size = (
-        "drawn in its size"
-        if story.mark == scene.radius
-        else f"drawn larger than it is ({scene.radius:g} m)"
-    )
+    life_size = story.mark == scene.radius
+    size = "" if life_size else f", drawn larger than it is ({scene.radius:g} m)"
+    graph = GRAPHS.get(scene.graph, scene.graph)
     return f"""\
-**Scrub** by `sim_time` to see robots drive, by `msg` to go through the conversation one \
+**Scrub** by `sim_time` to see robots drive, by `msg` to go through the conversations one \
 transmission at a time (arrow keys step), by `round` to go from event to event. \
 The timeline is chosen beside the play button.
 
 | on the floor | is |
 |---|---|
-| disc | a robot, {size}; its colour is what its battery holds, see the scale |
-| grey disc with a cross | out of energy, off the air |
-| ring | its part in this conversation: blue or orange relayed the request, purple called or was \
-called, green bid, yellow won |
-| grey lines | radio links: thick ones of the {GRAPHS[scene.graph]} that messages travel on, thin \
-ones of all pairs within {scene.radio_range:g} m |
-| **blue** arrow | greedy hop: to the neighbour nearest to the event |
-| **orange** arrow | face hop: around a hole in the network, when no neighbour is nearer |
+| disc | a robot{size}; its colour is what its battery holds |
+| grey disc, crossed | a robot off the air: out of energy, broken, or silenced |
+| ring | its part: blue, orange relayed; purple called; green bid; yellow won |
+| thick grey line | a link of the {graph}, which messages travel on |
+| thin grey line | any two robots within {scene.radio_range:g} m of each other |
+| **blue** arrow | greedy hop, to the neighbour nearest to the event |
+| **orange** arrow | face hop, where no neighbour is nearer: around a gap |
 | **purple** arrow | call for bids, heard by all neighbours |
 | **green** arrow | bid on its way to the auctioneer |
 | **yellow** arrow | assignment to the winner |
 | **vermillion** arrow | lost: nobody heard it |
 | **white** arrow | the transmission at the cursor |
-| red target | the event; the wide circle is the search radius, {scene.search_radius:g} m |
-| yellow dashes | the straight line that Eq. (1) charges {scene.per_metre:.1f} J/m for |
+| red target | the event; the circle is the search radius, {scene.search_radius:g} m |
+| yellow dashes | the straight line: Eq. (1) charges {scene.per_metre:.1f} J/m for it |
 | yellow line | where the robot drove |
-| hatched | the hole: no robot starts there, but events happen there and robots may cross it |
+| hatched | the hole: no robot starts there; events happen there all the same |
 
-*Collector*: the robot that was told of the event. *Auctioneer*: where the search ended.
+*Collector*: the robot that is told of the event. *Auctioneer*: where the search ends. \
+In the log, ×3 says that a frame was sent three times.
 """

@@ -120,9 +120,14 @@ class HeadlessViewer:
         """
         from PIL import Image
 
-        shown = {v.name: v.view_id for v in self.state().views if v.visible}
-        id_ = None if view is None else shown[view]
-        return Image.open(io.BytesIO(self._client.take_screenshot(view_id=id_))).convert("RGB")
+        ids = [shown.view_id for shown in self.state().views if shown.name == view]
+        for id_ in ids if view is not None else [None]:
+            try:
+                dots = self._client.take_screenshot(view_id=id_)
+            except ConnectionError:  # it is in a tab behind others
+                continue
+            return Image.open(io.BytesIO(dots)).convert("RGB")
+        raise KeyError(view)
 
     def state(self) -> ViewerState:
         """What is loaded and shown."""

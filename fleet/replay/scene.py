@@ -189,7 +189,7 @@ def _draw_scales(stream: Stream, scene: Scene) -> None:
     low, high = 0.25 * scene.height, 0.75 * scene.height
     for share, unit in ((0.0, ""), (0.5, ""), (1.0, " J")):
         y = low + share * (high - low) + hang
-        marks.append((left + width + 0.04 * side, y, f"{share * capacity:g}{unit}"))
+        marks.append((left + width + 0.05 * side, y, f"{share * capacity:g}{unit}"))
     stream.static(
         scheme.SCALES,
         rr.Points2D(

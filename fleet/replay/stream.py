@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Mapping, Sequence
 from typing import Any
+from urllib.parse import urlsplit
 
 import rerun as rr
 import rerun.blueprint as rrb
@@ -20,6 +22,7 @@ class Stream:
         # The wall clock would make two recordings of one run differ.
         self._recording.set_log_time_enabled(False)
         self._recording.set_log_tick_enabled(False)
+        self._live = live
         self._sinks: list[Any] = []
         if path is not None:
             self._sinks.append(rr.FileSink(path))
@@ -28,6 +31,8 @@ class Stream:
 
     def open(self, blueprint: rrb.Blueprint) -> None:
         """Begin, with the way it wants to be looked at."""
+        if self._live is not None:
+            _check_listens(self._live)
         self._recording.set_sinks(*self._sinks, default_blueprint=blueprint)
 
     def name(self, name: str) -> None:
@@ -50,5 +55,19 @@ class Stream:
 
     def close(self) -> None:
         """Write what is under way, and the footer that makes the file quick to open."""
-        self._recording.flush()
-        self._recording.disconnect()
+        try:
+            self._recording.flush()
+        except RuntimeError:
+            if self._live is None:
+                raise  # else the viewer was closed before the run was over, which it may be
+        finally:
+            self._recording.disconnect()
+
+
+def _check_listens(address: str) -> None:
+    """Raises ConnectionError if nobody does: Rerun would wait for them for ever."""
+    parts = urlsplit(address.removeprefix("rerun+"))
+    try:
+        socket.create_connection((parts.hostname or "", parts.port or 0), timeout=5.0).close()
+    except OSError as error:
+        raise ConnectionError(f"no viewer listens at {address}") from error

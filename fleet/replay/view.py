@@ -176,7 +176,9 @@ def _open_window(recording: Path) -> None:
             said.seek(0)
             lines = said.read().decode(errors="replace").strip().splitlines()
             reason = lines[0] if lines else f"exit code {code}"
-            raise ValueError(f"the viewer cannot open a window here ({reason}); try a browser")
+            if "DISPLAY" in reason:
+                reason = "there is no screen"
+            raise ValueError(f"the viewer cannot open a window here: {reason}; try the web viewer")
 
 
 def _answers(port: int, process: subprocess.Popen[bytes]) -> bool:

@@ -12,10 +12,12 @@ from typing import Any, TypeVar, get_args, get_origin
 from pydantic import TypeAdapter, ValidationError
 
 from fleet.scenario.errors import BadInput, bad, sentence, unknown
+from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.numbers import numbers
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
 from protocols.metrics import Metric
+from worlds.occupancy import OccupancyGrid
 from worlds.shapes import FloatArray
 
 T = TypeVar("T")
@@ -70,6 +72,8 @@ def convert(kind: Any, value: Any, key: str) -> Any:
         return metric(value, key)
     if kind == FloatArray:
         return numbers(value, key)
+    if kind is OccupancyGrid:
+        return occupancy_grid(value, key)
     problems = list(_unknown_keys(kind, value, key))
     if not problems:
         try:

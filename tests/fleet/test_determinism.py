@@ -19,7 +19,11 @@ CASES = {
     "physics": {"motion": "physics", "seed": 11, "rounds": 120},
     "hole": {"motion": "physics", "world": "random-hole", "protocol": "gfgf2a", "seed": 12},
 }
-GOLDEN = {}
+GOLDEN = {
+    "straight": "c1addc038dcbd35e",
+    "physics": "e8311c920f73c713",
+    "hole": "26e18496b53a5b1e",
+}
 HERE = (platform.system(), platform.machine())
 
 

@@ -14,9 +14,10 @@ from worlds.events import trace, uniform_sites
 from worlds.shapes import Disc, Polygon, square
 
 L_SHAPE = Polygon(((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)))
+FREE_OF_FILES = sorted(set(WORLDS) - {"map", "placed"})
 
 
-@pytest.mark.parametrize("name", sorted(set(WORLDS) - {"placed"}))
+@pytest.mark.parametrize("name", FREE_OF_FILES)
 def test_every_world_starts_robots_where_they_have_room(name):
     world = WORLDS[name].function()
     places = world.place(world.arena, 60, 0.1, np.random.default_rng(1))
@@ -31,7 +32,7 @@ def test_every_world_starts_robots_where_they_have_room(name):
         assert (obstacle.distance(places) >= 0.1).all()
 
 
-@pytest.mark.parametrize("name", sorted(set(WORLDS) - {"placed"}))
+@pytest.mark.parametrize("name", FREE_OF_FILES)
 @pytest.mark.parametrize("process", sorted(set(EVENTS) - {"trace"}))
 def test_events_fall_on_the_floor_in_order_and_not_into_obstacles(name, process):
     arena = WORLDS[name].function().arena

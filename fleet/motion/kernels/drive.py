@@ -50,6 +50,22 @@ def _stretch(piece, along, speed):
 
 
 @kernel
+def _throughout(piece, along, speed, time):
+    """The final speed if one stretch lasts for ``time`` [s], which is so in most steps and found
+    without dividing; negative if another begins before.
+    """
+    room, change = piece.rate * (piece.length - along), piece.rate * time
+    spare = room - 0.5 * (speed * speed - piece.exit * piece.exit)
+    if spare <= piece.rate * NEAR:
+        return speed - change if speed - change >= piece.exit else -1.0
+    if speed == piece.limit:
+        return speed if change * speed < spare else -1.0
+    last = speed + change
+    spare = min(room, spare - 0.5 * (last * last - speed * speed))  # if it brakes from there
+    return last if last <= piece.limit and 0.5 * change * (speed + last) <= spare else -1.0
+
+
+@kernel
 def _energy(piece, speed, last, time):
     """What a stretch of ``time`` [s] drains [J]: the integral of the power, and kinetic energy."""
     square = (speed * speed + speed * last + last * last) / 3.0
@@ -96,10 +112,13 @@ def _go_on(mover, pieces, time):
             mover.piece += 1
             mover.along = 0.0
             continue
-        last, lasts, far = _stretch(piece, mover.along, mover.speed)
-        if lasts > time:
-            last = mover.speed + time / lasts * (last - mover.speed)
-            lasts, far = time, 0.5 * (mover.speed + last) * time
+        last, lasts = _throughout(piece, mover.along, mover.speed, time), time
+        far = 0.5 * (mover.speed + last) * time
+        if last < 0.0:
+            last, lasts, far = _stretch(piece, mover.along, mover.speed)
+            if lasts > time:
+                last = mover.speed + time / lasts * (last - mover.speed)
+                lasts, far = time, 0.5 * (mover.speed + last) * time
         energy = _energy(piece, mover.speed, last, lasts)
         charge = mover.held - mover.spent
         if energy > charge:
@@ -139,19 +158,21 @@ def drive(mover, pieces, law, dt):
     _go_on(mover, pieces, dt)
     piece = pieces[mover.slot, mover.piece]
     x, y = position_at(piece, mover.along)
-    mover.vx, mover.vy, mover.spin = (x - mover.x) / dt, (y - mover.y) / dt, 0.0
+    pace = 1.0 / dt
+    mover.vx, mover.vy, mover.spin = (x - mover.x) * pace, (y - mover.y) * pace, 0.0
     if not law.holonomic:
         facing = heading_at(piece, mover.along) - mover.astern
-        mover.spin = wrapped(facing - mover.heading) / dt
+        mover.spin = wrapped(facing - mover.heading) * pace
 
 
 @kernel
 def coast(mover, dt, substeps):
     """Move for ``dt`` [s] as commanded, with nothing in the way: what the engine does."""
+    part = dt / substeps
     for _ in range(substeps):
-        mover.x += mover.vx * (dt / substeps)
-        mover.y += mover.vy * (dt / substeps)
-        mover.heading += mover.spin * (dt / substeps)
+        mover.x += mover.vx * part
+        mover.y += mover.vy * part
+        mover.heading += mover.spin * part
     mover.ux, mover.uy = mover.vx, mover.vy
 
 

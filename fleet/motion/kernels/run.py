@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fleet.motion.chipmunk import read_body, step_space, wake_body, write_body
+from fleet.motion.chipmunk import park_body, read_body, step_space, wake_body, write_body
 from fleet.motion.kernels.adrift import recover
 from fleet.motion.kernels.drive import coast, drive, position_at, wait
 from fleet.motion.kernels.geometry import wrapped
@@ -13,6 +13,7 @@ from fleet.motion.kernels.profile import set_off
 from fleet.motion.kernels.records import (
     ARRIVED,
     DRIVING,
+    EMPTY,
     MOVER,
     TOUCHED,
     WAITING,
@@ -230,6 +231,10 @@ def run(
                 _hear(mover, calls, bodies, numbers, counts)
             if _see(mover, law):
                 over += 1
+                if mover.awake and mover.phase <= EMPTY:
+                    mover.awake = 0
+                    if engine:
+                        park_body(calls, bodies[mover.robot])
         made += 1
         if law.sample > 0:
             kept = sample(movers, law, active, samples, kept, step + made)

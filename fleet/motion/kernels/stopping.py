@@ -27,8 +27,12 @@ def _cut(mover, pieces):
 
 
 @kernel
-def stop_short(floor: Floor, traffic: Traffic, slot: int, step: int) -> None:
-    """Make the mover in ``slot`` brake on its path from ``step`` on, and reserve where it stops."""
+def stop_short(floor: Floor, traffic: Traffic, slot: int, step: int) -> int:
+    """Make the mover in ``slot`` brake on its path from ``step`` on, and reserve where it stops.
+
+    Returns how many knots its track has; if that is more than there is room for, it must be
+    stopped again with more.
+    """
     mover, law = traffic.movers[slot], traffic.law[0]
     _cut(mover, traffic.pieces)
     mover.phase = DRIVING
@@ -36,6 +40,7 @@ def stop_short(floor: Floor, traffic: Traffic, slot: int, step: int) -> None:
     ghost = traffic.ghost[0]
     foresee(mover, ghost, traffic.pieces, traffic.tracks, traffic.boxes, law, step)
     put(floor, mover.robot, ghost.x, ghost.y)
+    return int(mover.knots)
 
 
 @kernel

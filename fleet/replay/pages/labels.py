@@ -34,7 +34,7 @@ class Labels:
     def place(self, x: float, y: float, letters: int) -> Point:
         """The anchor [m] of a label of so many ``letters`` for what is at (x, y) [m].
 
-        It goes to the first of eight places around where it covers nothing that is known of,
+        It goes to the first of ten places around where it covers nothing that is known of,
         nor what is beside the floor; if there is none, to the one where it covers the least.
         """
         side = self._side
@@ -46,6 +46,7 @@ class Labels:
                 (0.0, up), (0.0, -up), (beside, 0.0), (-beside, 0.0),
                 (0.6 * beside, 1.4 * up), (-0.6 * beside, 1.4 * up),
                 (0.6 * beside, -1.4 * up), (-0.6 * beside, -1.4 * up),
+                (0.0, 2.4 * up), (0.0, -2.4 * up),
             )
         ]  # fmt: skip
         others = [box for box in self._taken if (box[0], box[1]) != (x, y)]

@@ -36,6 +36,8 @@ SERIES = (
     Series("rfta1", "rfta1", short=True),
     Series("gfgf2", "gfgf2", short=True),
     Series("gfgf1", "gfgf1", search_radii=(2.0,), short=True),
+    Series("rfta3", "rfta3", (2.0,)),  # beyond the paper
+    Series("optimum", "optimum", (2.0,)),  # all robots known
     Series("7-saap", {"name": "k-saap", "hops": 7}, (2.0,), (BASELINE_RANGE,)),
     Series("bfs-7", {"name": "bfs", "hopmax": 7}, (2.0,), (BASELINE_RANGE,)),
     Series("bfs-10", {"name": "bfs", "hopmax": 10}, (2.0,), (BASELINE_RANGE,)),

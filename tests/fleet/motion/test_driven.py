@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, dist, inf, pi, sin
+from math import cos, dist, inf, nan, pi, sin
 
 import numpy as np
 import pytest
@@ -84,6 +84,13 @@ def test_a_robot_under_way_cannot_be_sent(driving):
     motion.depart(robot, (6.0, 5.0))
     with pytest.raises(ValueError, match="robot 0 is under way"):
         motion.depart(robot, (7.0, 5.0))
+
+
+def test_a_site_must_be_a_place(driving):
+    motion, (robot,) = driving([(5.0, 5.0)], SPEC)
+    for site in ((nan, 5.0), (5.0, inf)):
+        with pytest.raises(ValueError, match="expected two numbers"):
+            motion.depart(robot, site)
 
 
 def test_free_traffic_needs_an_engine():

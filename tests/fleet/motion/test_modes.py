@@ -29,7 +29,9 @@ SPECS = [
 BLOCK = Arena(obstacles=(Polygon(((4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0))),))
 
 
-def play(crowd, seed, spec, arena, *, slices=None, movers=4, tasks=25, interval=None, **keys):
+def play(
+    crowd, seed, spec, arena, *, slices=None, movers=4, tasks=25, interval=None, halts=0.0, **keys
+):
     """Send robots to random sites, several at once: everything that can be told of it."""
     motion, robots, rng = crowd(40, seed, spec, arena, interval=interval, **keys)
     trips, left = [], tasks
@@ -40,8 +42,9 @@ def play(crowd, seed, spec, arena, *, slices=None, movers=4, tasks=25, interval=
             if robot not in motion.moving and robot.battery.charge:
                 motion.depart(robot, site)
                 left -= 1
-        ended = motion.advance(inf if slices is None else motion.now + slices)
-        trips += ended
+        trips += motion.advance(inf if slices is None else motion.now + slices)
+        if halts and motion.moving and rng.random() < halts:
+            motion.halt(motion.moving[int(rng.integers(len(motion.moving)))])
     state = [(r.position, r.heading, r.battery.charge) for r in robots]
     return [astuple(trip) for trip in trips], state, motion.samples()
 
@@ -59,6 +62,18 @@ def test_where_nothing_touches_the_engine_changes_nothing(crowd, seed, spec, are
     without = play(crowd, seed, spec, arena, engine=False, interval=0.1)
     same(with_engine, without)
     assert all(trip[13] == 0 for trip in with_engine[0])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_breakdowns_are_the_same_too(crowd, seed):
+    keys = {"slices": 0.25, "movers": 12, "tasks": 60, "halts": 0.1}
+    spec = replace(SPECS[0], capacity=1e3)
+    with_engine, without = (
+        play(crowd, seed, spec, None, engine=engine, **keys) for engine in (True, False)
+    )
+    assert any(trip[1] == "broken down" for trip in without[0])
+    if not any(trip[13] for trip in with_engine[0]):
+        same(with_engine, without)
 
 
 @pytest.mark.parametrize("traffic", ["reserved", "free"])

@@ -224,6 +224,22 @@ def test_a_breakdown_makes_others_stop_and_plan_anew(driving, engine):
     assert around.contacts == 0
 
 
+def test_slow_starters_take_long_to_stop(driving):
+    slow = replace(SMALL, acceleration=0.03)
+    motion, robots = driving([(1.0, 20.0), (30.0, 30.0)], slow, Arena(60.0, 40.0))
+    watch = Watch(motion, robots, Arena(60.0, 40.0))
+    motion.depart(robots[0], (50.0, 20.0))
+    motion.depart(robots[1], (30.0, 10.0))
+    motion.advance(44.0)
+    stopped = motion._movers.stop_short
+    motion._stop(motion._voyages[0])
+    assert stopped.__self__.traffic.movers[motion._voyages[0].slot].knots > 61
+    while motion.moving:
+        watch.step()
+    watch.check(0.004)
+    assert [trip.outcome for trip in watch.trips] == ["arrived", "arrived"]
+
+
 def test_one_that_waits_for_a_broken_robot_goes_around_it(driving):
     motion, robots = driving([(1.0, 5.0), (5.0, 6.0)], SMALL, headings=[0.0, -pi / 2.0])
     watch = Watch(motion, robots)
@@ -231,7 +247,7 @@ def test_one_that_waits_for_a_broken_robot_goes_around_it(driving):
     while robots[0].position[0] < 3.9:
         watch.step()
     motion.depart(robots[1], (5.0, 4.0))
-    assert motion._movers.state(motion._voyages[1].slot)["start"] > motion._step
+    assert motion._movers.traffic.movers[motion._voyages[1].slot]["start"] > motion._step
     while robots[0].position[0] < 4.85:
         watch.step()
     motion.halt(robots[0])

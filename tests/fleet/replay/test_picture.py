@@ -7,7 +7,8 @@ import pytest
 import rerun as rr
 from PIL import Image
 
-from fleet.replay import clip, picture, scheme
+from fleet.replay import scheme
+from fleet.replay.picture import clip, picture
 from fleet.replay.readback import Recording
 
 

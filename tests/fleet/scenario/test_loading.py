@@ -92,7 +92,7 @@ def test_a_scenario_survives_being_written_down():
         ('[protocol]\nmetric = "distanse"', "unknown metric 'distanse'; did you mean 'distance'?"),
         ('[protocol.metric]\nname = "distance"\npower = 2', "'distance' has no parameters"),
         ("[protocol]\nmetric = 3", "is 3; expected the name of a metric"),
-        ('world = "mars"', "unknown world 'mars'; expected 'placed'"),
+        ('world = "mars"', "unknown world 'mars'; expected 'map', 'pit', 'placed'"),
         ("world = {width = -1.0}", "arena width -1.0 m; expected more than 0"),
         (
             'world = {name = "random-hole", radius = "big"}',
