@@ -25,13 +25,15 @@ def command(
     Writes OUT/report.html, with figures (PNG, SVG) and tables (CSV) beside it. Interrupted
     and run again, it goes on where it was.
     """
+    from fleet.study.paper.campaign import NETWORKS, NETWORKS_QUICK
     from fleet.study.paper.running import reproduce
 
     with resumable():
         with progress("paper") as show:
             result, page = reproduce(
-                out, quick=quick, physics=motion == "physics", workers=workers,
-                scheduler=scheduler, progress=show, say=say, command=this_command(),
+                out, networks=NETWORKS_QUICK if quick else NETWORKS,
+                physics=motion == "physics", workers=workers, scheduler=scheduler,
+                progress=show, say=say, command=this_command(),
             )  # fmt: skip
         click.echo(f"Report: {page}")
         conclude(result)

@@ -37,7 +37,7 @@ SERIES = (
     Series("gfgf2", "gfgf2", short=True),
     Series("gfgf1", "gfgf1", search_radii=(2.0,), short=True),
     Series("rfta3", "rfta3", (2.0,)),  # beyond the paper
-    Series("optimum", "optimum", (2.0,)),  # all robots known
+    Series("optimum", {"name": "optimum", "metric": "company-share"}, (2.0,)),  # knows all robots
     Series("7-saap", {"name": "k-saap", "hops": 7}, (2.0,), (BASELINE_RANGE,)),
     Series("bfs-7", {"name": "bfs", "hopmax": 7}, (2.0,), (BASELINE_RANGE,)),
     Series("bfs-10", {"name": "bfs", "hopmax": 10}, (2.0,), (BASELINE_RANGE,)),

@@ -20,12 +20,13 @@ NAMES = {
     "rfta1": "RFTA1", "rfta2": "RFTA2", "rfta2ge": "RFTA2GE", "gfgf2": "GFGF2",
     "gfgf2a": "GFGF2A", "7-saap": "7-SAAP", "bfs-7": "BFS-7", "bfs-10": "BFS-10",
     "rfta2ge-aggregated": "RFTA2GE, aggregated",
-    "rfta2ge-outbid": "RFTA2GE, outbidding only",
+    "rfta2ge-outbid": "RFTA2GE, outbidding only", "rfta3": "RFTA3", "optimum": "all-knowing",
 }  # fmt: skip
 COLOURS = {  # Okabe and Ito's, which colour-blind readers tell apart
     "rfta2": "#0072B2", "rfta2ge": "#D55E00", "gfgf2a": "#009E73", "rfta1": "#CC79A7",
     "gfgf2": "#009E73", "7-saap": "#E69F00", "bfs-7": "#56B4E9", "bfs-10": "#999999",
-    "rfta2ge-aggregated": "#E69F00", "rfta2ge-outbid": "#CC79A7",
+    "rfta2ge-aggregated": "#E69F00", "rfta2ge-outbid": "#CC79A7", "rfta3": "#CC79A7",
+    "optimum": "#999999",
 }  # fmt: skip
 RADIUS_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MARKERS = "osD^v"
@@ -64,11 +65,11 @@ def draw_all(results: Results, energies: dict[str, NDArray[np.float64]]) -> Iter
         yield Numbered(6, "Communication costs of RFTA1", _by_radius(results, "rfta1", MESSAGES))
         yield Numbered(
             7, "Communication costs of RFTA1 and GFGF2 at 2SR",
-            _by_protocol(results, ("rfta1", "gfgf2"), MESSAGES),
+            by_protocol(results, ("rfta1", "gfgf2"), MESSAGES),
         )  # fmt: skip
         yield Numbered(
             8, "How often the closest robot is found by RFTA1 and GFGF2 at 2SR",
-            _by_protocol(results, ("rfta1", "gfgf2"), CLOSEST),
+            by_protocol(results, ("rfta1", "gfgf2"), CLOSEST),
         )  # fmt: skip
         bars = ("rfta2", "rfta2ge", "7-saap", "bfs-7", "bfs-10")
         yield Numbered(
@@ -88,11 +89,11 @@ def draw_all(results: Results, energies: dict[str, NDArray[np.float64]]) -> Iter
         three = ("rfta2", "gfgf2a", "rfta2ge")
         yield Numbered(
             15, "Communication costs of RFTA2, GFGF2A and RFTA2GE at 2SR",
-            _by_protocol(results, (*three, "rfta2ge-aggregated", "rfta2ge-outbid"), MESSAGES),
+            by_protocol(results, (*three, "rfta2ge-aggregated", "rfta2ge-outbid"), MESSAGES),
         )  # fmt: skip
         yield Numbered(
             16, "Network lifetime of RFTA2, GFGF2A and RFTA2GE at 2SR",
-            _by_protocol(results, three, LIFETIME),
+            by_protocol(results, three, LIFETIME),
         )  # fmt: skip
         yield Numbered(
             17, "Robot energies after the lifetime, on one random network (SR = 0.2, r = 0.25)",
@@ -118,7 +119,7 @@ def _by_radius(results: Results, series: str, quantity: Quantity) -> Figure:
     return _panels(curves, quantity)
 
 
-def _by_protocol(results: Results, series: Sequence[str], quantity: Quantity) -> Figure:
+def by_protocol(results: Results, series: Sequence[str], quantity: Quantity) -> Figure:
     """Several protocols at 2SR over the range, a panel for each world."""
     curves = [
         (NAMES[name], COLOURS[name], results.where(series=name, search_radius=2.0))
@@ -135,7 +136,7 @@ def _panels(curves: Sequence[tuple[str, str, Results]], quantity: Quantity) -> F
         for (label, colour, runs), marker in zip(curves, MARKERS, strict=False):
             _curve(axes, runs.where(world=world), quantity, label, colour, marker)
         axes.set_title(title, fontsize=9.0)
-        axes.set_xlabel("communication radius r  [unit square; × 10 m]")
+    figure.supxlabel("communication radius r  [unit square; × 10 m]", fontsize=9.0)
     figure.axes[0].set_ylabel(quantity.label)
     figure.axes[0].set_ylim(bottom=0.0)  # after both are drawn: they share it
     figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside right center")

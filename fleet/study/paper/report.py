@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fleet import __version__
 from fleet.assembly import prepare
 from fleet.scenario.model import Scenario
+from fleet.study.paper import beyond
 from fleet.study.paper.claims import Claim, claims
 from fleet.study.paper.figures import NAMES, Numbered, draw_all
 from fleet.study.paper.published import Cell
@@ -38,10 +39,15 @@ def write_report(out: Path, results: Results, command: str) -> Path:
     figures = out / "figures"
     figures.mkdir(parents=True, exist_ok=True)
     drawn: list[dict[str, Any]] = []
+    further: list[dict[str, Any]] = []
     for motion in motions:
         label = "" if motion == "straight" else " Physics motion."
-        numbered = draw_all(results.where(motion=motion), energies_left(motion))
+        runs = results.where(motion=motion)
+        numbered = draw_all(runs, energies_left(motion))
         drawn.extend(_saved(figure, figures, motion, label) for figure in numbered)
+        further.extend(
+            _saved(figure, figures, motion, label) for figure in beyond.draw_beyond(runs)
+        )
     paper = results.where(motion=motions[0])
     listed = [*theory_claims(), *claims(paper)]
     tables = [_table(results, world, motions) for world in TITLES]
@@ -50,6 +56,9 @@ def write_report(out: Path, results: Results, command: str) -> Path:
     for number, table in zip((2, 3), tables, strict=True):
         lines = [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]]
         _write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
+    reached = _beyond(results, motions)
+    for table in reached:
+        _write_csv(out / f"{table['stem']}.csv", beyond.HEADER, table["lines"])
     template = Environment(
         loader=PackageLoader("fleet.study.paper", "."), autoescape=True, trim_blocks=True
     ).get_template("report.html.j2")
@@ -63,6 +72,8 @@ def write_report(out: Path, results: Results, command: str) -> Path:
             tables=tables,
             claims=listed,
             figures=drawn,
+            beyond=reached,
+            further=further,
         ),
         encoding="utf-8",
     )
@@ -117,6 +128,24 @@ def _table(results: Results, world: str, motions: Sequence[str]) -> dict[str, An
     return {"title": TITLES[world], "columns": list(motions), "rows": rows, "notes": notes}
 
 
+def _beyond(results: Results, motions: Sequence[str]) -> list[dict[str, Any]]:
+    """The tables of what RFTA3 comes to, one for each topology and motion."""
+    limits = {world: beyond.typical_bounds(world) for world in beyond.TITLES}
+    return [
+        {
+            "title": f"{title}, {motion} motion",
+            "stem": f"beyond-{world}-{motion}",
+            "header": beyond.HEADER,
+            "lines": beyond.lines(
+                list(beyond.reaches(results.where(motion=motion, world=world), limits[world]))
+            ),
+            "limits": limits[world],
+        }
+        for motion in motions
+        for world, title in beyond.TITLES.items()
+    ]
+
+
 def _ge_note(runs: Results, motion: str) -> str:
     """The messages of RFTA2GE by the other ways to count its bids."""
     relayed, aggregated = (
@@ -136,7 +165,7 @@ def _printed(cell: Cell) -> str:
 
 
 def _measured(cell: Comparison) -> str:
-    apart = f" ({cell.difference:+.2f})" if cell.difference is not None else ""
+    apart = f" ({cell.difference:+.2f})".replace("-", "−") if cell.difference is not None else ""
     return _printed(cell.measured) + apart
 
 
@@ -161,7 +190,7 @@ def _provenance(results: Results, motions: Sequence[str]) -> str:
         for runs, motion in zip(lifetimes, motions, strict=True)
     )
     networks = len(results.where(series="rfta2", radio_range=2.5).distinct("seed"))
-    return f"{counts}; {networks} random networks for each range and topology."
+    return f"{counts}; networks drawn for each range and topology: {networks}."
 
 
 def _write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -31,7 +31,11 @@ class Results:
         for name, value in same.items():
             column = self._columns[name] if len(self) else np.empty(0)
             chosen &= np.isclose(column, value) if isinstance(value, float) else column == value
-        return Results({name: column[chosen] for name, column in self._columns.items()})
+        return self.chosen(chosen)
+
+    def chosen(self, which: NDArray[np.bool_]) -> Results:
+        """Those runs that ``which`` is true of (runs,)."""
+        return Results({name: column[which] for name, column in self._columns.items()})
 
     def values(self, name: str) -> NDArray[np.float64]:
         """One column (runs,)."""

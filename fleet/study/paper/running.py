@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from fleet.study.paper.campaign import NETWORKS, NETWORKS_QUICK, cases
+from fleet.study.paper.campaign import NETWORKS, cases
 from fleet.study.paper.report import write_report
 from fleet.study.paper.results import Results
 from fleet.study.result import StudyResult
@@ -23,7 +23,7 @@ COLUMNS = (
 def reproduce(
     out: Path,
     *,
-    quick: bool = False,
+    networks: int = NETWORKS,
     physics: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -33,11 +33,11 @@ def reproduce(
 ) -> tuple[StudyResult, Path]:
     """Run what is left of the campaign into ``out``, and write its report.
 
-    ``quick`` takes a tenth of the networks; ``physics`` runs all of it on pymunk as well.
+    ``networks`` are drawn for each range and topology; ``physics`` runs all of it on pymunk as
+    well.
     Returns the runs, and the path of the page. Raises what
     :func:`fleet.study.running.run_tasks` raises.
     """
-    networks = NETWORKS_QUICK if quick else NETWORKS
     motions = ["straight", "physics"] if physics else ["straight"]
     result = run_tasks(
         tasks(networks, motions), out, workers=workers, scheduler=scheduler,

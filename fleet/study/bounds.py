@@ -1,0 +1,81 @@
+"""How long any allocation could keep a fleet serving events: bounds that no protocol exceeds.
+
+For the paper's motion, in which a trip costs Eq. (1) on the straight line. One holds for whoever
+sends the nearest robot, one for anybody at all, who may know every event in advance.
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.assembly import make_course, start, streams
+from fleet.scenario.choices import make_world
+from fleet.scenario.model import Scenario
+
+SITES = 2000  # events looked at to tell how far the nearest robot is
+
+
+class Bounds(NamedTuple):
+    """Rounds that all joules of a fleet would last for."""
+
+    nearest: float  # if each event cost a trip from the nearest place that a robot starts at
+    foresight: int  # if trips were the shortest that serve all events, known in advance
+
+
+def bounds(scenario: Scenario) -> Bounds:
+    """The bounds of the fleet and the events of ``scenario``, in rounds and ``straight`` motion.
+
+    Batteries count as one: that a robot runs empty while others hold plenty shortens no bound.
+
+    Raises:
+        BadInput: something in the scenario does not exist, or does not fit.
+        ImpossibleWorld: no connected network of these robots was found in this world.
+    """
+    random = streams(scenario.seed)
+    world = make_world(scenario.world)
+    starts = np.array(start(world, scenario, 0.0, random["placement"]))
+    course = make_course(scenario, world, len(starts), random)
+    sites = np.array([occurrence.position for occurrence in islice(course.occurrences, SITES)])
+    spec = scenario.robot
+    reach = spec.capacity * len(starts) / spec.power.per_metre(spec.cruise)  # [m], of them all
+    nearest = float(_distances(sites, starts).min(axis=1).mean())  # [m]
+    return Bounds(reach / nearest, _most(starts, sites, reach))
+
+
+def shortest_service(starts: NDArray[np.float64], sites: NDArray[np.float64]) -> float:
+    """The least distance [m] in which robots at ``starts`` (n, 2) serve ``sites`` (m, 2) in order.
+
+    The offline k-server problem. Whoever serves a site comes from where it served one before, or
+    from its start, and every such place is left once: an assignment of places to later sites
+    (Chrobak, Karloff, Payne and Vishwanathan, SIAM J. Discrete Math. 4(2):172, 1991).
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    if not len(sites):
+        return 0.0
+    lengths = _distances(sites, np.vstack([starts, sites[:-1]]))
+    order = np.arange(len(sites))
+    lengths[:, len(starts) :][order[:-1] >= order[:, None]] = np.inf  # not served yet
+    rows, places = linear_sum_assignment(lengths)
+    return float(lengths[rows, places].sum())
+
+
+def _most(starts: NDArray[np.float64], sites: NDArray[np.float64], reach: float) -> int:
+    """How many of ``sites``, from the first, can be served within ``reach`` [m]."""
+    low, high = 0, len(sites)
+    while low < high:
+        middle = (low + high + 1) // 2
+        if shortest_service(starts, sites[:middle]) <= reach:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+def _distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """From each of ``a`` (m, 2) to each of ``b`` (n, 2): (m, n) [m]."""
+    return np.asarray(np.hypot(*(a[:, None] - b[None]).transpose(2, 0, 1)))
