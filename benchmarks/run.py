@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-ALL = ("lifetimes", "motion", "live", "replay", "study")
+ALL = ("lifetimes", "motion", "live", "delivery", "replay", "study")
 
 
 def main() -> None:

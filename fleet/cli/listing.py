@@ -11,18 +11,21 @@ import click
 
 @click.command("list")
 def command() -> None:
-    """Protocols, metrics, worlds and motions, with one line and the source of each."""
+    """All that a scenario can name, with one line and the source of each."""
     from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
     from fleet.motion.catalogue import MOTIONS
+    from fleet.radio.catalogue import RADIOS
+    from fleet.timing import TIMINGS
     from protocols.catalogue import METRICS, PROTOCOLS
-    from worlds.catalogue import WORLDS
+    from worlds.catalogue import EVENTS, WORLDS
 
     console = Console()
     catalogues: dict[str, Mapping[str, Any]] = {
-        "protocol": PROTOCOLS, "metric": METRICS, "world": WORLDS, "motion": MOTIONS
+        "protocol": PROTOCOLS, "metric": METRICS, "world": WORLDS, "motion": MOTIONS,
+        "time": TIMINGS, "events": EVENTS, "radio": RADIOS,
     }  # fmt: skip
     for kind, catalogue in catalogues.items():
         table = Table(kind, "what it does", "source", title_justify="left", expand=True)

@@ -11,9 +11,11 @@ from click.testing import CliRunner
 
 from fleet.cli import main
 from fleet.motion.catalogue import MOTIONS
+from fleet.radio.catalogue import RADIOS
 from fleet.results import Summary
+from fleet.timing import TIMINGS
 from protocols.catalogue import METRICS, PROTOCOLS
-from worlds.catalogue import WORLDS
+from worlds.catalogue import EVENTS, WORLDS
 
 KEYS = [
     "protocol",
@@ -104,7 +106,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments):
 
 def test_list_names_everything_with_its_source():
     listed = fleet("list").stdout
-    for catalogue in (PROTOCOLS, METRICS, WORLDS, MOTIONS):
+    for catalogue in (PROTOCOLS, METRICS, WORLDS, MOTIONS, TIMINGS, EVENTS, RADIOS):
         for name in catalogue:
             assert f" {name} " in listed
 
