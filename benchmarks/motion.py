@@ -1,9 +1,10 @@
-"""How fast robots drive, as ratios within one run: ``python benchmarks/motion.py``.
+"""Motion, measured within one run: python benchmarks/motion.py.
 
-One lifetime's work is 350 tasks for 100 robots of radius 0.1 m on 10 m × 10 m, each for the
-third nearest robot, at a step of 1/60 s. It is driven by this project; by a plain program over
-pymunk's public interface, along the same paths by the same law; and, for the floor, the engine
-alone makes as many steps with one body moving. Then everybody drives at once.
+A lifetime's work is what RFTA2 sends 100 robots of radius 0.1 m to do, at a step of 1/60 s. It
+is driven by this project; by a plain program over pymunk's public interface, along the same
+paths by the same law; and, for the floor, the engine alone makes as many steps with one body
+moving. Then come the figures that must hold: who arrives, what touches, who waits, and what the
+step does to the energy. Aims stand in brackets.
 """
 
 from __future__ import annotations
@@ -14,56 +15,56 @@ import subprocess
 import sys
 import tempfile
 from functools import cache
-from math import atan2, copysign, cos, hypot, inf, pi, remainder, sin, sqrt, tau
+from math import atan2, copysign, cos, dist, hypot, inf, pi, remainder, sin, sqrt, tau
 from pathlib import Path
-from statistics import median
+from statistics import fmean
 from time import process_time
 
 import numpy as np
 import pymunk
 
+import fleet
 from fleet.energy import Battery
 from fleet.motion.chipmunk import connect, step_space
 from fleet.motion.driven import DrivenMotion
 from fleet.motion.kernels.records import LINE
 from fleet.motion.options import DriveOptions
 from fleet.motion.planning import Planner
+from fleet.observer import Observer
 from fleet.robot import Robot, RobotSpec
 from protocols.compiled import kernel
 from worlds.arena import Arena, scatter
+from worlds.catalogue import WORLDS
 
 DT = 1.0 / 60.0  # [s]
-TASKS = 350
-ROBOTS = 100
 SPEC = RobotSpec(capacity=1e6)
 
 
-def start(seed):
-    """Where everybody starts: points (n, 2) [m] and headings (n,) [rad]."""
-    rng = np.random.default_rng(seed)
-    return scatter(Arena(), ROBOTS, SPEC.radius, rng), rng.uniform(-pi, pi, ROBOTS)
+class Work(Observer):
+    """Keeps where a lifetime begins, and who is sent where."""
+
+    def run_started(self, fleet):
+        self.points = np.array([robot.position for robot in fleet.robots])
+        self.headings = np.array([robot.heading for robot in fleet.robots])
+        self.tasks = []
+
+    def trip_ended(self, event, trip):
+        self.tasks.append((trip.robot, trip.site))
 
 
 @cache
-def tasks(seed):
-    """Who goes where: the third nearest robot to each of so many random sites."""
-    points, headings = start(seed)
-    motion, robots = fleet(points, headings, Arena(), engine=False)
-    found = []
-    for site in np.random.default_rng([seed, 1]).uniform(0.0, 10.0, (TASKS, 2)):
-        robot = int(np.argpartition(((points - site) ** 2).sum(axis=1), 2)[2])
-        found.append((robot, (float(site[0]), float(site[1]))))
-        motion.depart(robots[robot], found[-1][1])
-        (trip,) = motion.advance(inf)
-        points[robot] = trip.end
-    return found
+def work(seed):
+    """What RFTA2 has its robots do."""
+    seen = Work()
+    fleet.run(fleet.Scenario.of(protocol="rfta2", motion="physics", seed=seed), [seen])
+    return seen
 
 
-def fleet(points, headings, arena, engine, options=None):
+def crew(points, headings, arena=None, *, engine=True, spec=SPEC, **options):
     """A fleet in place: (motion, robots)."""
-    motion = DrivenMotion(SPEC, arena, options or DriveOptions(dt=DT), engine=engine)
+    motion = DrivenMotion(spec, arena or Arena(), DriveOptions(**options), engine=engine)
     robots = [
-        Robot(id, (x, y), heading, Battery(SPEC.capacity), 2.5, [], motion)
+        Robot(id, (x, y), heading, Battery(spec.capacity), 2.5, [], motion)
         for id, ((x, y), heading) in enumerate(zip(points.tolist(), headings.tolist(), strict=True))
     ]
     motion.place(robots)
@@ -72,11 +73,11 @@ def fleet(points, headings, arena, engine, options=None):
 
 def lifetime(seed, *, engine):
     """Drive it here: (CPU time [s], steps, energy [J])."""
-    (points, headings), wanted = start(seed), tasks(seed)
+    wanted = work(seed)
     began = process_time()
-    motion, robots = fleet(points, headings, Arena(), engine)
+    motion, robots = crew(wanted.points, wanted.headings, engine=engine, dt=DT)
     steps, energy = 0, 0.0
-    for robot, site in wanted:
+    for robot, site in wanted.tasks:
         motion.depart(robots[robot], site)
         (trip,) = motion.advance(inf)
         steps += trip.steps
@@ -90,6 +91,7 @@ class PlainWorld:
     def __init__(self, points, headings):
         self.space = pymunk.Space()
         self.space.collision_slop = 1e-4
+        self.contacts = 0
         self.bodies = []
         for point, heading in zip(points.tolist(), headings.tolist(), strict=True):
             body = pymunk.Body(body_type=pymunk.Body.STATIC)
@@ -98,13 +100,10 @@ class PlainWorld:
             circle.mass = SPEC.mass
             self.space.add(body, circle)
             self.bodies.append(body)
-        for a, b in (
-            ((0, 0), (10, 0)),
-            ((10, 0), (10, 10)),
-            ((10, 10), (0, 10)),
-            ((0, 10), (0, 0)),
-        ):
-            self.space.add(pymunk.Segment(self.space.static_body, a, b, 0.0))
+        walls = ((0, 0), (10, 0), (10, 10), (0, 10))
+        for k, corner in enumerate(walls):
+            wall = pymunk.Segment(self.space.static_body, corner, walls[k - 1], 0.0)
+            self.space.add(wall)
 
     def drive(self, robot, pieces):
         """Turn towards the path, then follow it: (steps, energy [J])."""
@@ -125,13 +124,10 @@ class PlainWorld:
                 error = remainder(body.angle - heading, tau)
                 spin = mean * bend - mean * off / 0.04 - 10.0 * mean * error
                 middle = body.angle + 0.5 * spin * DT
-                body.velocity = (mean * cos(middle), mean * sin(middle))
-                body.angular_velocity = spin
-                self.space.step(DT)
+                self._step(body, mean * cos(middle), mean * sin(middle), spin)
                 steps += 1
                 square = (speed * speed + speed * last + last * last) / 3.0
-                power = 6.25 * square + 9.79 * 0.5 * (speed + last) + 3.66
-                energy += power * DT
+                energy += (6.25 * square + 9.79 * 0.5 * (speed + last) + 3.66) * DT
                 speed = last
                 if to_go < 1e-3:
                     break
@@ -148,10 +144,16 @@ class PlainWorld:
                 return steps, 3.66 * DT * steps
             wish = copysign(min(SPEC.turn_rate, sqrt(2.0 * ease / DT * abs(error))), error)
             spin = min(max(wish, spin - ease), spin + ease)
-            body.velocity = (0.0, 0.0)
-            body.angular_velocity = spin
-            self.space.step(DT)
+            self._step(body, 0.0, 0.0, spin)
             steps += 1
+
+    def _step(self, body, vx, vy, spin):
+        body.velocity = (vx, vy)
+        body.angular_velocity = spin
+        self.space.step(DT)
+        ux, uy = body.velocity
+        if hypot(ux - vx, uy - vy) > 1e-9:
+            self.contacts += 1
 
 
 def locate(piece, position):
@@ -168,17 +170,19 @@ def locate(piece, position):
     return radius * ahead, sense * (radius - hypot(dx, dy)), heading, sense / radius
 
 
-def plain_lifetime(seed, share):
-    """The same by the plain program, from its first ``share`` tasks."""
-    (points, headings), wanted = start(seed), tasks(seed)
+def plain_lifetime(seed):
+    """The same by the plain program: (CPU time [s], steps, energy [J])."""
+    wanted = work(seed)
     began = process_time()
-    world = PlainWorld(points, headings)
-    built = process_time() - began
-    places = [(x, y) for x, y in points.tolist()]
+    world = PlainWorld(wanted.points, wanted.headings)
+    took = process_time() - began
+    places = [(x, y) for x, y in wanted.points.tolist()]
     planner = Planner(Arena(), SPEC.radius, places, DriveOptions().clearances)
     began, steps, energy = process_time(), 0, 0.0
-    for robot, site in wanted[:share]:
+    for robot, site in wanted.tasks:
         plan = planner.plan(robot, places[robot], site)
+        if plan.pieces is None or not len(plan.pieces):
+            continue
         names = plan.pieces.dtype.names
         pieces = [dict(zip(names, piece.tolist(), strict=True)) for piece in plan.pieces]
         made, drained = world.drive(robot, pieces)
@@ -186,8 +190,7 @@ def plain_lifetime(seed, share):
         energy += drained
         places[robot] = tuple(world.bodies[robot].position)
         planner.rest(robot, places[robot])
-    took = process_time() - began
-    return built + took * TASKS / share, steps * TASKS / share, energy * TASKS / share
+    return took + process_time() - began, steps, energy
 
 
 @kernel
@@ -198,7 +201,7 @@ def _step_alone(calls, steps, dt):
 
 def bare_steps(steps):
     """The engine alone, one body moving among the parked: CPU time of so many steps [s]."""
-    world = PlainWorld(*start(0))
+    world = PlainWorld(work(0).points, work(0).headings)
     world.bodies[0].body_type = pymunk.Body.DYNAMIC
     world.bodies[0].velocity = (1e-6, 0.0)
     wires, _keep = connect(world.space, world.bodies)
@@ -206,6 +209,130 @@ def bare_steps(steps):
     began = process_time()
     _step_alone(wires.calls, steps, DT)
     return process_time() - began
+
+
+def print_speed(seeds):
+    """Compare the ways to drive a lifetime's work."""
+    for engine in (True, False):
+        lifetime(0, engine=engine)
+    physics, path = ([lifetime(s, engine=e) for s in seeds] for e in (True, False))
+    plain = [plain_lifetime(seed) for seed in seeds]
+    assert [run[1:] for run in physics] == [run[1:] for run in path]
+    ours, without, slow = (sum(run[0] for run in runs) for runs in (physics, path, plain))
+    steps = sum(run[1] for run in physics)
+    floor = min(bare_steps(steps) for _ in range(5))
+    count = len(seeds)
+    tasks = sum(len(work(seed).tasks) for seed in seeds)
+    same = sum(run[2] for run in plain) / sum(run[2] for run in physics)
+    print(
+        f"what RFTA2 has 100 robots do: {tasks // count} tasks, {steps // count} steps a lifetime"
+    )
+    row = "  {:30} {:8.1f} ms {}".format
+    print(row("physics", 1e3 * ours / count, f"{count / ours:.0f} lifetimes a second"))
+    print(row("path", 1e3 * without / count, f"{ours / without:.2f} x as fast as physics"))
+    print(
+        row(
+            "plain pymunk", 1e3 * slow / count,
+            f"physics is {slow / ours:.1f} x as fast [15]; energy {same:.3f} of ours",
+        )
+    )  # fmt: skip
+    print(
+        row(
+            "the engine alone, as many steps", 1e3 * floor / count,
+            f"physics has {floor / ours:.2f} of that speed [0.15]",
+        )
+    )  # fmt: skip
+
+
+def serve(radius, fleets=20, tasks=100):
+    """One robot at a time, the third nearest of those that can go: (trips, refused)."""
+    spec, trips, refused = RobotSpec(radius=radius, capacity=1e6), [], 0
+    for seed in range(fleets):
+        rng = np.random.default_rng(seed)
+        points = scatter(Arena(), 100, radius, rng)
+        motion, robots = crew(points, rng.uniform(-pi, pi, 100), spec=spec, dt=DT)
+        for site in rng.uniform(0.0, 10.0, (tasks, 2)).tolist():
+            near = sorted(robots, key=lambda robot: dist(robot.position, site))
+            ranked = (r for r in near[2:] + near[:2] if motion.cost(r, tuple(site)) < inf)
+            robot = next(ranked, None)
+            if robot is None:
+                refused += 1
+                continue
+            motion.depart(robot, tuple(site))
+            trips += motion.advance(inf)
+    return trips, refused
+
+
+def at_once(world, radius, *, robots=100, movers=50, tasks=1000, traffic="reserved"):
+    """``movers`` robots are under way at all times, to sites up to 3 m away: their trips."""
+    spec, rng = RobotSpec(radius=radius, capacity=1e6), np.random.default_rng(3)
+    floor = WORLDS[world].function()
+    points = floor.place(floor.arena, robots, radius, rng)
+    headings = rng.uniform(-pi, pi, robots)
+    motion, all_robots = crew(points, headings, floor.arena, spec=spec, dt=DT, traffic=traffic)
+    idle, trips = list(all_robots), []
+    while len(trips) < tasks:
+        while idle and len(motion.moving) < movers:
+            robot = idle.pop(int(rng.integers(len(idle))))
+            way, turn = rng.uniform(0.2, 3.0), rng.uniform(-pi, pi)
+            x, y = robot.position[0] + way * cos(turn), robot.position[1] + way * sin(turn)
+            motion.depart(
+                robot, (min(max(x, radius), 10 - radius), min(max(y, radius), 10 - radius))
+            )
+        ended = motion.advance(inf)
+        trips += ended
+        idle += [all_robots[trip.robot] for trip in ended]
+    return trips
+
+
+def print_outcomes():
+    """Count who arrives, what touches, and how long they wait."""
+    print("2000 tasks, one robot at a time, 100 robots:")
+    for radius, aim in ((0.1, "100"), (0.2, "99.5")):
+        trips, refused = serve(radius)
+        arrived = sum(trip.outcome == "arrived" for trip in trips)
+        print(
+            f"  radius {radius} m     {arrived / (len(trips) + refused):8.2%} arrived [{aim} %],"
+            f" {sum(trip.contacts for trip in trips)} contacts [0]"
+        )
+    print("50 robots under way at all times, 1000 trips:")
+    for world, radius, robots in (
+        ("random", 0.1, 100), ("random", 0.2, 100), ("pit", 0.1, 100), ("rooms", 0.1, 100),
+        ("rooms", 0.2, 75), ("warehouse", 0.1, 100), ("warehouse", 0.2, 75),
+    ):  # fmt: skip
+        trips = at_once(world, radius, robots=robots)
+        waits = [trip.waited for trip in trips]
+        arrived = [trip.outcome for trip in trips].count("arrived")
+        pocketed = [trip.outcome for trip in trips].count("no path")
+        print(
+            f"  {world:9} {radius} m   {arrived / len(trips):8.2%} arrived, {pocketed} had no path,"
+            f" {sum(trip.contacts for trip in trips)} contacts [0],"
+            f" waited {fmean(waits):.2f} s on average, {max(waits):.1f} s at most"
+        )
+
+
+def print_energy():
+    """Compare the energy of trips at two steps, and with the sum of its parts."""
+    found = []
+    for dt in (DT, 1.0 / 240.0):
+        motion, robots = crew(work(0).points, work(0).headings, dt=dt)
+        trips = []
+        for robot, site in work(0).tasks:
+            motion.depart(robots[robot], site)
+            trips += [trip for trip in motion.advance(inf) if trip.energy]
+        found.append(np.array([trip.energy for trip in trips]))
+        parts = [
+            trip.energy_path + trip.energy_ramps + trip.energy_pivots
+            + trip.energy_waiting + trip.energy_contact
+            for trip in trips
+        ]  # fmt: skip
+    off = np.abs(found[0] / found[1] - 1.0)
+    split = np.abs(np.array(parts) / found[1] - 1.0).max()
+    print("energy of a trip:")
+    print(
+        f"  step 1/60 s against 1/240 s: off by {off.mean():.1e} on average [1e-3], {off.max():.1e}"
+    )
+    print(f"  the sum of its parts: off by {split:.1e} at most [1e-3]")
 
 
 def everybody(count, *, engine, seconds=20.0):
@@ -216,7 +343,7 @@ def everybody(count, *, engine, seconds=20.0):
     side = sqrt(count)
     arena, rng = Arena(side, side), np.random.default_rng(3)
     points = scatter(arena, count, SPEC.radius, rng)
-    motion, robots = fleet(points, rng.uniform(-pi, pi, count), arena, engine)
+    motion, robots = crew(points, rng.uniform(-pi, pi, count), arena, engine=engine, dt=DT)
     driving = sending = 0.0
     sent, idle, ticks = 0, list(robots), 0
     while ticks < 10 * seconds:
@@ -256,7 +383,7 @@ def start_up():
 def first_trip():
     """Print the CPU time of one trip in physics, imports excluded."""
     began = process_time()
-    motion, robots = fleet(*start(0), Arena(), engine=True)
+    motion, robots = crew(np.array([[1.0, 1.0], [3.0, 3.1]]), np.zeros(2))
     motion.depart(robots[0], (5.0, 5.0))
     motion.advance(inf)
     print(process_time() - began)
@@ -266,24 +393,9 @@ def main():
     """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--repeat", type=int, default=9, help="lifetimes of each kind")
-    seeds = range(parser.parse_args().repeat)
-    for engine in (True, False):
-        lifetime(0, engine=engine)
-    physics, path = ([lifetime(s, engine=e) for s in seeds] for e in (True, False))
-    assert [run[1:] for run in physics] == [run[1:] for run in path]
-    plain = [plain_lifetime(seed, 60) for seed in range(3)]
-    ours, without, slow = (median(run[0] for run in runs) for runs in (physics, path, plain))
-    steps = int(median(run[1] for run in physics))
-    floor = min(bare_steps(steps) for _ in range(5))
-    print(f"one lifetime: {TASKS} tasks, {steps} steps")
-    print(f"  physics             {ours * 1e3:8.1f} ms {1.0 / ours:7.1f} a second")
-    print(
-        f"  path                {without * 1e3:8.1f} ms {ours / without:7.2f} x as fast as physics"
-    )
-    print(f"  plain pymunk        {slow * 1e3:8.1f} ms; physics is {slow / ours:.1f} x as fast")
-    print(
-        f"  the engine's steps  {floor * 1e3:8.1f} ms; physics has {floor / ours:.2f} of that speed"
-    )
+    print_speed(range(parser.parse_args().repeat))
+    print_outcomes()
+    print_energy()
     print("everybody drives, CPU time for 0.1 s:")
     for count in (100, 1000):
         for engine in (False, True):

@@ -9,6 +9,7 @@ from math import inf, pi
 
 import numpy as np
 
+from fleet.course import Course
 from fleet.energy import Battery
 from fleet.handler import Handler
 from fleet.motion.catalogue import MOTIONS
@@ -28,7 +29,7 @@ from fleet.scenario.choices import (
 )
 from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
-from fleet.simulation import Course, Fleet, Labels, Simulation
+from fleet.simulation import Fleet, Labels, Simulation
 from fleet.timing import Stream
 from protocols.links import connected, unit_disc
 from protocols.messages import Point

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import dist, inf
 
 from fleet.agenda import Agenda
 from fleet.conversing import Conversations
+from fleet.course import Course
 from fleet.crew import Crew
-from fleet.faults import Blackout, Breakdown
+from fleet.dispatch import Dispatch, Dispatcher
+from fleet.faults import Breakdown
 from fleet.handler import Handler, Notice
 from fleet.motion import Motion, Trip
 from fleet.observer import Observer
@@ -51,24 +53,13 @@ class Fleet:
     topology: Topology  # the true one, whatever robots believe
 
 
-@dataclass(frozen=True, slots=True)
-class Course:
-    """What befalls a fleet: how time goes, what happens, what breaks, and when it is over."""
-
-    timing: Rounds | Stream
-    occurrences: Iterator[Occurrence]
-    breakdowns: Sequence[Breakdown] = ()
-    blackouts: Sequence[Blackout] = ()
-    rounds: int | None = None  # served in rounds, or raised in a stream; None: no limit
-
-
 class Simulation:
     """One run of one scenario."""
 
     def __init__(
         self,
         fleet: Fleet,
-        protocol: ProtocolFunction,
+        protocol: ProtocolFunction | Dispatcher,
         radio: Radio,
         motion: Motion,
         handler: Handler,
@@ -86,10 +77,14 @@ class Simulation:
         self._agenda = Agenda()
         many_drive = isinstance(course.timing, Stream)
         self._crew = Crew(fleet, radio, motion, self._observers, many_drive=many_drive)
-        self._talks = Conversations(
+        self._talks: Conversations | Dispatch = Conversations(
             protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
             self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
         )  # fmt: skip
+        if many_drive and isinstance(protocol, Dispatcher):
+            self._talks = Dispatch(
+                protocol, self._crew.view, radio, self._agenda, self.tally, self._concluded
+            )
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
         self._relocating: dict[int, Task | None] = {}  # by robot: what it carries on the way
         self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from protocols import central, flooding, gfgf, metrics, rfta
 from protocols.adaptive import aap
 from protocols.connectivity import mia_ta
-from protocols.messages import Conversation
+from protocols.messages import Conversation, ProtocolFunction
 from protocols.metrics import Metric
 from protocols.rfta3 import rfta3
 
@@ -18,9 +18,9 @@ BOSE = "Bose et al., Wireless Networks 7(6), 2001"
 
 
 class ProtocolEntry(NamedTuple):
-    """A protocol, and where it comes from. Its docstring says what it does."""
+    """A protocol, or a class whose instances are, and where it comes from."""
 
-    function: Callable[..., Conversation]  # view, event, source; parameters by keyword
+    function: Callable[..., Conversation] | type[ProtocolFunction]
     source: str
     local: bool = True  # False: it asks robots that nobody has talked to
 
@@ -34,6 +34,9 @@ class MetricEntry(NamedTuple):
 
 PROTOCOLS: dict[str, ProtocolEntry] = {
     "aap": ProtocolEntry(aap, "doi:10.1177/1550147720932751, our reading"),
+    "assignment": ProtocolEntry(
+        central.Assignment, "Jonker and Volgenant, Computing 38(4), 1987; all are known", False
+    ),
     "bfs": ProtocolEntry(flooding.bfs, f"RODAA, in {PAPER}, section 5"),
     "face": ProtocolEntry(gfgf.face, BOSE),
     "gfg": ProtocolEntry(central.gfg, f"{BOSE}; the destination from a location service", False),

@@ -6,6 +6,8 @@ They ask any robot at any time and say nothing, so their message counts mean not
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +35,33 @@ def gfg(view: View, event: Event, source: RobotId) -> Conversation:
     best = min(bids).robot
     reached = yield from deliver(view, source, best, view[best].position)
     return Award(best if reached == best else None, reached, tuple(bids))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assignment:
+    """Robots for all open events at once, at the least total cost; nothing is said.
+
+    In a stream, events are collected for ``interval`` [s] and then assigned together, those
+    that wait again too. In rounds there is one at a time, for the best of all robots.
+
+    Raises:
+        ValueError: the interval is not positive.
+    """
+
+    metric: Metric = distance
+    interval: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.interval < inf:
+            raise ValueError(f"interval is {self.interval} s; expected more than 0")
+
+    def __call__(self, view: View, event: Event, source: RobotId) -> Conversation:
+        """One event by itself."""
+        return optimum(view, event, source, metric=self.metric)
+
+    def together(self, view: View, events: Sequence[Event]) -> dict[int, RobotId]:
+        """Event id to robot, of those that can be served."""
+        return assign_all(view, events, self.metric)
 
 
 def assign_all(

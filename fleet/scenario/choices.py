@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from inspect import isclass
 from typing import Any
 
 from fleet.motion import Motion
@@ -16,7 +17,7 @@ from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
 from fleet.timing import TIMINGS, Rounds, Stream
 from protocols.catalogue import PROTOCOLS
-from protocols.messages import Conversation, ProtocolFunction
+from protocols.messages import ProtocolFunction
 from worlds.arena import Arena
 from worlds.catalogue import EVENTS, WORLDS, World
 from worlds.events import Occurrence
@@ -44,7 +45,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     """
     name, parameters = scenario.protocol.name, dict(scenario.protocol.parameters)
     if looks_like_file(name):
-        function: Callable[..., Conversation] = load_object(name, "protocol")
+        function: Any = load_object(name, "protocol")
     elif name in PROTOCOLS:
         function = PROTOCOLS[name].function
     else:
@@ -57,7 +58,10 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
         parameters["search"] = {**search, "radius": scenario.search_radius}
     elif "search_radius" in accepted:
         parameters["search_radius"] = scenario.search_radius
-    return bind(function, parameters, "protocol")
+    made: ProtocolFunction = (build if isclass(function) else bind)(
+        function, parameters, "protocol"
+    )
+    return made
 
 
 def make_world(choice: Choice) -> World:

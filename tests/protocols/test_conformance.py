@@ -6,6 +6,8 @@ a link that exists, and that only robots that know of the event are asked anythi
 
 from __future__ import annotations
 
+from inspect import isclass
+
 import numpy as np
 import pytest
 from hand_drawn import converse as play
@@ -21,7 +23,8 @@ def protocol(request):
 
 
 def converse(protocol, *arguments):
-    return play(protocol.function, *arguments, local=protocol.local)
+    made = protocol.function() if isclass(protocol.function) else protocol.function
+    return play(made, *arguments, local=protocol.local)
 
 
 @pytest.fixture(params=["gabriel", "udg", "rng", "emst"])
