@@ -1,0 +1,45 @@
+"""The examples run as they stand, and say what they promise."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+
+def said_by(name, *arguments):
+    return subprocess.run(
+        [sys.executable, EXAMPLES / name, *map(str, arguments)],
+        capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+
+
+def test_the_study_in_python_runs_and_goes_on(tmp_path):
+    texts = [said_by("study_in_python.py", tmp_path / "out") for _ in range(2)]
+    assert texts[0] == texts[1]
+    assert texts[0].count("95 % CI") == 6
+    assert "at 3.0 m rfta2 lives +" in texts[0]
+
+
+def test_rfta3_lives_longer_beside_rfta2(tmp_path):
+    text = said_by("rfta3_beside_rfta2.py", tmp_path)
+    rounds = {name: int(n) for name, n in re.findall(r"^(rfta\d) +(\d+)", text, re.MULTILINE)}
+    assert rounds["rfta3"] > 1.4 * rounds["rfta2"]
+    for protocol in rounds:
+        assert (tmp_path / f"{protocol}.rrd").stat().st_size > 1_000_000
+
+
+def test_a_protocol_and_a_metric_of_ones_own():
+    text = said_by("own_protocol.py")
+    lives = [int(n) for n in re.findall(r"lives +(\d+) rounds", text)]
+    assert len(lives) == 3
+    assert len(set(lives)) == 3  # they are not all the same protocol
+
+
+def test_each_example_is_tested():
+    tested = Path(__file__).read_text(encoding="utf-8")
+    for example in EXAMPLES.glob("*.py"):
+        assert f'"{example.name}"' in tested
