@@ -77,7 +77,9 @@ def recorded(scenario: Scenario, path: Path | None, *, live: bool) -> Observer:
         if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
         return recorder(scenario, path, live=live)
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise bad("--rrd", f"{str(path)!r} cannot be written: {error.strerror}") from error
+    except ValueError as error:
         raise bad("", str(error)) from error
 
 
