@@ -263,26 +263,32 @@ def serve(radius, fleets=20, tasks=100):
     return trips, refused
 
 
-def at_once(world, radius, *, robots=100, movers=50, tasks=1000, traffic="reserved"):
-    """``movers`` robots are under way at all times, to sites up to 3 m away: their trips."""
+def at_once(world, radius, robots, *, movers=50, tasks=1000):
+    """``movers`` robots are under way at all times, to sites up to 3 m away that they believe
+    they can reach: (trips, refused).
+    """
     spec, rng = RobotSpec(radius=radius, capacity=1e6), np.random.default_rng(3)
     floor = WORLDS[world].function()
     points = floor.place(floor.arena, robots, radius, rng)
     headings = rng.uniform(-pi, pi, robots)
-    motion, all_robots = crew(points, headings, floor.arena, spec=spec, dt=DT, traffic=traffic)
-    idle, trips = list(all_robots), []
+    motion, all_robots = crew(points, headings, floor.arena, spec=spec, dt=DT)
+    idle, trips, refused, stranded = list(all_robots), [], 0, []
     while len(trips) < tasks:
         while idle and len(motion.moving) < movers:
             robot = idle.pop(int(rng.integers(len(idle))))
             way, turn = rng.uniform(0.2, 3.0), rng.uniform(-pi, pi)
             x, y = robot.position[0] + way * cos(turn), robot.position[1] + way * sin(turn)
-            motion.depart(
-                robot, (min(max(x, radius), 10 - radius), min(max(y, radius), 10 - radius))
-            )
+            site = (min(max(x, radius), 10 - radius), min(max(y, radius), 10 - radius))
+            if motion.cost(robot, site) < inf:
+                motion.depart(robot, site)
+            else:
+                stranded.append(robot)
         ended = motion.advance(inf)
         trips += ended
-        idle += [all_robots[trip.robot] for trip in ended]
-    return trips
+        idle += [all_robots[trip.robot] for trip in ended] + stranded
+        refused += len(stranded)
+        stranded.clear()
+    return trips, refused
 
 
 def print_outcomes():
@@ -300,14 +306,14 @@ def print_outcomes():
         ("random", 0.1, 100), ("random", 0.2, 100), ("pit", 0.1, 100), ("rooms", 0.1, 100),
         ("rooms", 0.2, 75), ("warehouse", 0.1, 100), ("warehouse", 0.2, 75),
     ):  # fmt: skip
-        trips = at_once(world, radius, robots=robots)
+        trips, refused = at_once(world, radius, robots)
         waits = [trip.waited for trip in trips]
         arrived = [trip.outcome for trip in trips].count("arrived")
-        pocketed = [trip.outcome for trip in trips].count("no path")
         print(
-            f"  {world:9} {radius} m   {arrived / len(trips):8.2%} arrived, {pocketed} had no path,"
+            f"  {world:9} {radius} m   {arrived / len(trips):8.2%} arrived,"
             f" {sum(trip.contacts for trip in trips)} contacts [0],"
-            f" waited {fmean(waits):.2f} s on average, {max(waits):.1f} s at most"
+            f" waited {fmean(waits):.2f} s on average, {max(waits):.1f} s at most;"
+            f" {refused} had no path and were not sent"
         )
 
 

@@ -54,7 +54,7 @@ def _cache_folder(numba_version: str) -> Path:
     for package in KERNEL_PACKAGES:
         spec = find_spec(package)
         for folder in (spec.submodule_search_locations or ()) if spec else ():
-            for source in sorted(Path(folder).glob("*.py")):
+            for source in sorted(Path(folder).rglob("*.py")):
                 digest.update(source.read_bytes())
     given = os.environ.get("NUMBA_CACHE_DIR")
     for root in (Path(given) if given else _home_cache(), Path(tempfile.gettempdir())):

@@ -87,26 +87,24 @@ def park_body(calls: Any, body: Any) -> None:
 
 
 @kernel
-def write_body(
-    calls: Any, body: Any, numbers: Any, counts: Any, vx: Any, vy: Any, spin: Any
-) -> None:
-    """Set a body's velocity [m/s] and turn rate [rad/s]."""
-    numbers[0], numbers[1], numbers[2] = vx, vy, spin
+def write_body(calls: Any, body: Any, numbers: Any, counts: Any, vx: Any, vy: Any) -> None:
+    """Set a body's velocity [m/s]."""
+    numbers[0], numbers[1] = vx, vy
     counts[0] = 0
     _call_on_body(calls[WRITE], body, calls[TOLD])
 
 
 @kernel
 def read_body(calls: Any, body: Any, counts: Any) -> None:
-    """Read into ``numbers`` a body's x, y [m], heading [rad], and velocity in x and y [m/s]."""
+    """Read into ``numbers`` a body's x, y [m], and velocity in x and y [m/s]."""
     counts[0] = 0
     _call_on_body(calls[READ], body, calls[HEARD])
 
 
 @kernel
-def _drive_alone(wires: Any, vx: Any, vy: Any, spin: Any, dt: Any) -> None:
+def _drive_alone(wires: Any, vx: Any, vy: Any, dt: Any) -> None:
     wake_body(wires.calls, wires.bodies[0])
-    write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, vx, vy, spin)
+    write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, vx, vy)
     step_space(wires.calls, dt)
     read_body(wires.calls, wires.bodies[0], wires.counts)
     park_body(wires.calls, wires.bodies[0])
@@ -133,8 +131,8 @@ def connect(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> tuple[Wires, 
         array = ffi.from_buffer("double[]", numbers)
         floats.num, floats.max, floats.arr = 0, ROOM, array
         heard, told = ffi.new("pmBatchedData *"), ffi.new("pmBatchedData *")
-        heard.fields = lib.POSITION | lib.ANGLE | lib.VELOCITY
-        told.fields = lib.VELOCITY | lib.ANGULAR_VELOCITY
+        heard.fields = lib.POSITION | lib.VELOCITY
+        told.fields = lib.VELOCITY
         heard.floatArray = told.floatArray = floats
         heard.intArray = told.intArray = ints
         calls = [_address(ffi, ffi.addressof(lib, name)) for name in SIGNATURES]
@@ -177,23 +175,23 @@ def trusted() -> bool:
     def world() -> tuple[pymunk.Space, pymunk.Body]:
         space = pymunk.Space()
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
-        body.position, body.angle = (1.25, -0.5), 0.75
+        body.position = (1.25, -0.5)
         circle = pymunk.Circle(body, 0.1)
         circle.mass = 9.0
         space.add(body, circle)
         return space, body
 
-    speed, spin, dt = (0.3, 0.7), 1.1, 1.0 / 60.0
+    speed, dt = (0.3, 0.7), 1.0 / 60.0
     space, body = world()
     body.body_type = pymunk.Body.DYNAMIC
-    body.velocity, body.angular_velocity = speed, spin
+    body.velocity = speed
     space.step(dt)
-    expected = (*body.position, body.angle, *body.velocity)
+    expected = (*body.position, *body.velocity)
     space, body = world()
     try:
         wires, _kept = connect(space, [body])
     except NoBridge:
         return False
-    _drive_alone(wires, *speed, spin, dt)
+    _drive_alone(wires, *speed, dt)
     parked = body.body_type == pymunk.Body.STATIC
     return parked and tuple(wires.numbers[: len(expected)].tolist()) == expected

@@ -75,6 +75,7 @@ class DrivenMotion:
         self._with_engine = engine
         self._law = law_of(spec, self.options, sample_interval)
         self._fine = fine_substeps(spec, self.options)
+        self._substeps = 1
         self._stopping: set[int] = set()  # slots of those that brake, to plan anew
         self._tread()
         self._eq1 = spec.power.per_metre(spec.cruise)  # [J/m]
@@ -211,13 +212,14 @@ class DrivenMotion:
         for battery, left in zip(self._batteries, charge, strict=True):
             battery.charge = left
 
-    def _look_after(self, places: Sequence[int]) -> None:
-        """See to the trips that are over, and to those that cannot go on as planned."""
+    def _look_after(self, over: Sequence[tuple[int, int]]) -> None:
+        """See to the trips that are over, and to those that cannot go on as planned: places in
+        the order of departure, and phases.
+        """
         ended: dict[int, Outcome] = {}
         anew: list[_Voyage] = []
-        for place in places:
+        for place, phase in over:
             voyage = self._voyages[place]
-            phase = self._movers.phase(voyage.slot)
             if phase == EMPTY:
                 ended[place] = "battery empty"
                 anew += self._check_rest(voyage)
@@ -273,8 +275,9 @@ class DrivenMotion:
         """Take finer steps where bodies may touch: where nobody keeps them apart, or where some
         had to stop against their reservations.
         """
-        careful = self._stopping or self.options.traffic == "free"
-        self._law[0]["substeps"] = self._fine if careful else 1
+        substeps = self._fine if self._stopping or self.options.traffic == "free" else 1
+        if substeps != self._substeps:
+            self._law[0]["substeps"] = self._substeps = substeps
 
     def _stop(self, voyage: _Voyage) -> None:
         """Let a robot brake on its path, to plan anew from there."""

@@ -2,7 +2,7 @@
 
 Parked robots are static, which costs nothing however many there are; a robot's body is made
 dynamic for its drive. Two bodies that are pressed together sink in by ``SLOP`` at most; nothing
-rubs and nothing bounces.
+rubs and nothing bounces. So nothing turns a disc but its own wheels: bodies have no headings.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Engine:
 
     def _body(self, spec: RobotSpec, robot: Robot) -> pymunk.Body:
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
-        body.position, body.angle = robot.position, robot.heading
+        body.position = robot.position
         circle = pymunk.Circle(body, spec.radius)
         circle.mass = spec.mass  # on the shape: a body forgets it when it is parked
         return body
@@ -72,11 +72,9 @@ class Engine:
             if mover["awake"] == 2:
                 body.body_type = pymunk.Body.DYNAMIC
             body.velocity = (float(mover["vx"]), float(mover["vy"]))
-            body.angular_velocity = float(mover["spin"])
         for _ in range(substeps):
             self.space.step(dt / substeps)
         for mover in awake:
             body = self.bodies[mover["robot"]]
             mover["x"], mover["y"] = body.position
-            mover["heading"] = body.angle
             mover["ux"], mover["uy"] = body.velocity

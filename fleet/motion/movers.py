@@ -5,7 +5,6 @@ Importing this module loads numba.
 
 from __future__ import annotations
 
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
+from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.records import MOVER, PIECE, Floor, Traffic
 from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
@@ -42,9 +42,6 @@ class Account(NamedTuple):
     spent_adrift: float
 
 
-_ACCOUNT = itemgetter(*((MOVER.names or ()).index(name) for name in Account._fields))
-
-
 class Movers:
     """Robots under way, each in a slot, which is used again; in order of departure."""
 
@@ -58,11 +55,12 @@ class Movers:
             np.zeros(0, np.int64),
             np.zeros(1, MOVER),
             np.zeros((0, 4)),
-            np.zeros(0, np.int64),
+            np.zeros((0, 2), np.int64),
         )
         self._floor = floor
         self._engine = engine
         self._wires = disconnected() if engine is None else engine.wires
+        self._embark, self._drive = direct(embark), direct(run)
         self._free: list[int] = []
         self._slots = np.zeros(0, np.int64)  # in order of departure
         self._count = 0  # of them in use
@@ -81,7 +79,7 @@ class Movers:
         self._slots[self._count] = slot
         self._count += 1
         self._more_pieces(len(path) + 1)
-        needed = embark(
+        needed = self._embark(
             self._floor, self.traffic, self._active, slot, robot, *position, heading, charge,
             path, step,
         )  # fmt: skip
@@ -103,13 +101,15 @@ class Movers:
         """The trips at these places in the order are over: their slots are free again."""
         for place in sorted(places, reverse=True):
             self._free.append(int(self._slots[place]))
-            self._slots[place : self._count - 1] = self._slots[place + 1 : self._count]
             self._count -= 1
+            if place < self._count:
+                self._slots[place : self._count] = self._slots[place + 1 : self._count + 1]
 
-    def advance(self, step: int, steps: int) -> tuple[int, list[int]]:
+    def advance(self, step: int, steps: int) -> tuple[int, list[tuple[int, int]]]:
         """Drive on from ``step`` by ``steps`` at most.
 
-        Returns the steps made, and who needs looking after: places in the order of departure.
+        Returns the steps made, and who needs looking after: (place in the order of departure,
+        phase of the trip).
         """
         if len(self._samples) and self._count > len(self._samples):
             self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
@@ -117,8 +117,8 @@ class Movers:
         made, kept, over = drive(step, steps)
         if kept:
             self._kept.append(self._samples[:kept].copy())
-        places: list[int] = self.traffic.over[:over].tolist()
-        return made, places
+        found: list[tuple[int, int]] = self.traffic.over[:over].tolist()
+        return made, found
 
     def poses(self) -> NDArray[np.float64]:
         """x, y, heading, charge (k, 4) [m, m, rad, J], in order of departure."""
@@ -130,7 +130,7 @@ class Movers:
 
     def account(self, slot: int) -> Account:
         """What has become of one robot since its departure."""
-        return Account(*_ACCOUNT(self.traffic.movers[slot].tolist()))
+        return Account._make(self._accounts.item(slot))
 
     def samples(self) -> NDArray[np.float64]:
         """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`."""
@@ -167,7 +167,9 @@ class Movers:
 
     def _run(self, step: int, steps: int) -> tuple[int, int, int]:
         assert self._wires is not None
-        return run(self.traffic, self._wires, self._active, step, steps, self._samples)
+        return self._drive(
+            self._floor, self.traffic, self._wires, self._active, step, steps, self._samples
+        )
 
     def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
         """The same as the compiled loop, with the engine stepped over its public interface."""
@@ -199,6 +201,7 @@ class Movers:
         self.traffic = self.traffic._replace(
             **{name: _longer(getattr(self.traffic, name), have + more) for name in by_slot}
         )
+        self._accounts = self.traffic.movers[list(Account._fields)]  # a view
         self._slots = _longer(self._slots, have + more)
         self._found = np.zeros(have + more, np.int64)
         self._free.extend(range(have + more - 1, have - 1, -1))

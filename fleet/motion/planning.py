@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion.floor import lay_out
+from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.plan import NO_PATH, move_in, plan
 from fleet.motion.kernels.records import NOBODY, PIECE
@@ -42,6 +43,7 @@ class Planner:
         self._clearances = np.array(clearances)
         self._make_room(32)
         self._count = len(points)
+        self._plan, self._put = direct(plan), direct(put)
         self._known: dict[tuple[RobotId, Point], Plan] = {}
         which, other = move_in(self.floor, np.array(points, float).reshape(-1, 2))
         if which != NOBODY:
@@ -63,7 +65,7 @@ class Planner:
         if not all(map(isfinite, site)):
             raise ValueError(f"the site of robot {robot} is {site}; expected two numbers [m]")
         while True:
-            end, x, y, length = plan(
+            end, x, y, length = self._plan(
                 self.floor, robot, *position, *site, self._clearances, self._pieces
             )
             if end <= len(self._pieces):
@@ -81,10 +83,10 @@ class Planner:
         around = self._count
         self._known.clear()
         for other, where in stopped:
-            put(self.floor, around + other, *where)
+            self._put(self.floor, around + other, *where)
         found = self.plan(robot, position, site)
         for other, _ in stopped:
-            put(self.floor, around + other, nan, nan)
+            self._put(self.floor, around + other, nan, nan)
         self._known.clear()
         return self.plan(robot, position, site) if found.pieces is None else found
 
@@ -95,7 +97,7 @@ class Planner:
 
     def rest(self, robot: RobotId, position: Point) -> None:
         """The robot rests at ``position`` [m], or will."""
-        put(self.floor, robot, *position)
+        self._put(self.floor, robot, *position)
         self._known.clear()
 
     def changed(self) -> None:

@@ -1,8 +1,8 @@
 """Finding back to the path after a push.
 
 A robot that has been pushed steers towards its path by feedback on its offset and heading. It
-changes the velocity that the engine left it with by no more than its acceleration allows:
-commanding speed regardless would press bodies into each other.
+changes the velocity that the engine left it with by no more than its acceleration allows, and
+never by more than a gentle one: commanding speed regardless would press bodies into each other.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from fleet.motion.kernels.profile import heading_at
 from fleet.motion.kernels.records import ARC, ARRIVED, EMPTY, LINE, LOST
 from protocols.compiled import kernel
 
+GENTLE = 5.0  # [m/s²] the most with which it speeds up and brakes, however strong it is
 REACH = 0.2  # [m] on which offsets decay
 LATERAL = 2.0  # [1/s] by which a holonomic robot reduces its offset
 FACE = 1.2  # [rad] facing further away than this, it stops and turns
@@ -54,6 +55,12 @@ def _locate(mover, pieces):
 
 
 @kernel
+def _strength(law):
+    """The acceleration [m/s²] of a robot that is off its path."""
+    return min(law.acceleration, GENTLE)
+
+
+@kernel
 def _spin_towards(mover, error, law):
     """The turn rate [rad/s] that takes the heading error [rad] away, braking in time."""
     ease = law.turn_acceleration * law.dt
@@ -78,8 +85,8 @@ def _wish(mover, piece, along, left, to_go, law):
     path = heading_at(piece, min(max(along, 0.0), piece.length))
     facing = path if law.holonomic else mover.heading + mover.astern
     speed = max(0.0, mover.ux * math.cos(facing) + mover.uy * math.sin(facing))
-    speed = min(speed + law.acceleration * law.dt, piece.limit)
-    speed = min(speed, math.sqrt(2.0 * law.acceleration * max(to_go, 0.0)))
+    speed = min(speed + _strength(law) * law.dt, piece.limit)
+    speed = min(speed, math.sqrt(2.0 * _strength(law) * max(to_go, 0.0)))
     speed = min(speed, max(to_go, 0.0) / law.dt)
     if law.holonomic:
         side = -LATERAL * left
@@ -125,13 +132,13 @@ def recover(mover, pieces, law):
     vx, vy, spin = _wish(mover, piece, along, left, to_go, law)
     dx, dy = vx - mover.ux, vy - mover.uy
     change = math.hypot(dx, dy)
-    ease = min(1.0, law.acceleration * law.dt / change) if change > 0.0 else 1.0
+    ease = min(1.0, _strength(law) * law.dt / change) if change > 0.0 else 1.0
     mover.vx, mover.vy, mover.spin = mover.ux + ease * dx, mover.uy + ease * dy, spin
     _spend(mover, law)
     speed = math.hypot(mover.vx, mover.vy)
     if mover.phase == EMPTY:
         return
-    if to_go <= THERE and speed <= 2.0 * law.acceleration * law.dt:
+    if to_go <= THERE and speed <= 2.0 * _strength(law) * law.dt:
         mover.phase = ARRIVED if max(abs(left), -to_go) <= CLOSE else LOST
     elif abs(left) > ASTRAY or mover.since * law.dt > PATIENCE:
         mover.phase = LOST

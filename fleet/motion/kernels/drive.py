@@ -166,14 +166,22 @@ def drive(mover, pieces, law, dt):
 
 
 @kernel
-def coast(mover, dt, substeps):
-    """Move for ``dt`` [s] as commanded, with nothing in the way: what the engine does."""
-    part = dt / substeps
-    for _ in range(substeps):
-        mover.x += mover.vx * part
-        mover.y += mover.vy * part
-        mover.heading += mover.spin * part
+def swing(mover, dt, times):
+    """Turn for ``dt`` [s], so many ``times``, as commanded; nothing can be in the way of that."""
+    for _ in range(times):
+        mover.heading += mover.spin * dt
+
+
+@kernel
+def coast(mover, dt, times):
+    """Move for ``dt`` [s], so many ``times``, as commanded: what the engine does where nothing is
+    in the way.
+    """
+    for _ in range(times):
+        mover.x += mover.vx * dt
+        mover.y += mover.vy * dt
     mover.ux, mover.uy = mover.vx, mover.vy
+    swing(mover, dt, times)
 
 
 @kernel

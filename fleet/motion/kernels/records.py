@@ -191,7 +191,7 @@ class Traffic(NamedTuple):
     near: IntArray  # (slots,) work space
     ghost: Records  # (1,) MOVER, work space
     poses: FloatArray  # (slots, 4) x, y, heading, charge [m, m, rad, J]
-    over: IntArray  # (slots,) places in the order of departure
+    over: IntArray  # (slots, 2) places in the order of departure, and phases
 
 
 class Wires(NamedTuple):

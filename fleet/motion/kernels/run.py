@@ -6,7 +6,8 @@ import numpy as np
 
 from fleet.motion.chipmunk import park_body, read_body, step_space, wake_body, write_body
 from fleet.motion.kernels.adrift import recover
-from fleet.motion.kernels.drive import coast, drive, position_at, wait
+from fleet.motion.kernels.bumps import bumps, stay
+from fleet.motion.kernels.drive import coast, drive, position_at, swing, wait
 from fleet.motion.kernels.geometry import wrapped
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.profile import set_off
@@ -91,19 +92,23 @@ def embark(
 
 @kernel
 def _decide(mover, pieces, law, step):
-    """Command what a mover does in ``step``; returns whether it is on the move."""
+    """Command what a mover does in ``step``; returns whether it does anything.
+
+    Its body is woken when it leaves its place: where robots are kept apart, one that turns on
+    the spot needs no engine.
+    """
     if mover.phase == WAITING:
         if step < mover.start:
             wait(mover, law)
             return False
         mover.phase = DRIVING
-        if not mover.awake:
-            mover.awake = 2
     mover.steps += 1
     if mover.adrift:
         recover(mover, pieces, law)
     else:
         drive(mover, pieces, law, law.dt)
+    if not mover.awake and (mover.vx != 0.0 or mover.vy != 0.0 or not law.reserved):
+        mover.awake = 2
     return True
 
 
@@ -126,12 +131,17 @@ def _see(mover, law):
 
 @kernel
 def command(movers: Records, pieces: Records, law: Record, active: IntArray, step: int) -> int:
-    """Decide what everybody does in ``step``; returns how many are on the move."""
-    driving = 0
+    """Decide what everybody does in ``step``; returns for how many that is up to the engine."""
+    moving, part = 0, law.dt / law.substeps
     for k in range(len(active)):
-        if _decide(movers[active[k]], pieces, law, step):
-            driving += 1
-    return driving
+        mover = movers[active[k]]
+        if _decide(mover, pieces, law, step):
+            if mover.awake:
+                swing(mover, part, law.substeps)
+                moving += 1
+            else:
+                coast(mover, part, law.substeps)
+    return moving
 
 
 @kernel
@@ -146,19 +156,19 @@ def settle(movers: Records, law: Record, active: IntArray) -> int:
 
 @kernel
 def _tell(mover, calls, bodies, numbers, counts):
-    """Give a mover's command to its body."""
+    """Give the velocity that a mover is to have to its body."""
     body = bodies[mover.robot]
     if mover.awake == 2:
         wake_body(calls, body)
-    write_body(calls, body, numbers, counts, mover.vx, mover.vy, mover.spin)
+    write_body(calls, body, numbers, counts, mover.vx, mover.vy)
 
 
 @kernel
 def _hear(mover, calls, bodies, numbers, counts):
-    """Learn from a mover's body where it is now."""
+    """Learn from a mover's body where it is now, and how fast."""
     read_body(calls, bodies[mover.robot], counts)
-    mover.x, mover.y, mover.heading = numbers[0], numbers[1], numbers[2]
-    mover.ux, mover.uy = numbers[3], numbers[4]
+    mover.x, mover.y = numbers[0], numbers[1]
+    mover.ux, mover.uy = numbers[2], numbers[3]
 
 
 @kernel
@@ -180,20 +190,23 @@ def sample(
 
 @kernel
 def report(movers: Records, active: IntArray, poses: FloatArray, over: IntArray) -> int:
-    """Write down how everybody is now, and who needs looking after, in the order of ``active``."""
+    """Write down how everybody is now, and who needs looking after: their places in ``active``,
+    and their phases. Returns how many these are.
+    """
     count = 0
     for k in range(len(active)):
         mover = movers[active[k]]
         poses[k, 0], poses[k, 1] = mover.x, mover.y
         poses[k, 2], poses[k, 3] = wrapped(mover.heading), mover.held - mover.spent
         if mover.phase >= ARRIVED:
-            over[count] = k
+            over[count, 0], over[count, 1] = k, mover.phase
             count += 1
     return count
 
 
 @kernel
 def run(
+    floor: Floor,
     traffic: Traffic,
     wires: Wires,
     active: IntArray,
@@ -203,28 +216,32 @@ def run(
 ) -> tuple[int, int, int]:
     """Drive on from ``step`` until trips need looking after, ``steps`` at most.
 
-    ``wires``: the engine; with none, all that drive coast. Returns (steps made, samples kept,
+    ``wires``: the engine; with none, all that drive coast, and stop at what they would run into
+    where bodies may touch at all: in steps of several parts. Returns (steps made, samples kept,
     trips that need looking after); it stops early if ``samples`` gets full.
     """
     movers, pieces, law = traffic.movers, traffic.pieces, traffic.law[0]
     calls, bodies, numbers, counts = wires.calls, wires.bodies, wires.numbers, wires.counts
-    engine = calls[0] != 0
+    engine, substeps, part = calls[0] != 0, law.substeps, law.dt / law.substeps
     made, kept, over = 0, 0, 0
     while made < steps and over == 0:
         if law.sample > 0 and kept + len(active) > len(samples):
             break
-        driving = 0
+        moving = 0
         for k in range(len(active)):
             mover = movers[active[k]]
             if _decide(mover, pieces, law, step + made):
-                driving += 1
-                if engine:
+                if engine and mover.awake:
                     _tell(mover, calls, bodies, numbers, counts)
+                    swing(mover, part, substeps)
+                    moving += 1
+                elif substeps > 1 and bumps(mover, movers, active, floor, law):
+                    stay(mover)
                 else:
-                    coast(mover, law.dt, law.substeps)
-        if engine and driving > 0:
-            for _ in range(law.substeps):
-                step_space(calls, law.dt / law.substeps)
+                    coast(mover, part, substeps)
+        if moving > 0:
+            for _ in range(substeps):
+                step_space(calls, part)
         for k in range(len(active)):
             mover = movers[active[k]]
             if engine and mover.awake:

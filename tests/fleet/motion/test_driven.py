@@ -127,7 +127,7 @@ def test_the_winner_departs_by_the_plan_of_its_bid(driving, monkeypatch):
     motion, (one, two) = driving([(3.0, 5.0), (1.0, 1.0)], SPEC, BLOCK)
     one.cost_to((7.0, 5.0))
     two.cost_to((7.0, 5.0))
-    monkeypatch.setattr("fleet.motion.planning.plan", None)
+    monkeypatch.setattr(motion._planner, "_plan", None)
     motion.depart(one, (7.0, 5.0))
     (trip,) = motion.advance(inf)
     assert trip.outcome == "arrived"

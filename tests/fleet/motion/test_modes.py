@@ -19,6 +19,7 @@ from fleet.motion import chipmunk
 from fleet.motion.engine import Engine
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
+from worlds.catalogue import WORLDS
 from worlds.shapes import Polygon
 
 SPECS = [
@@ -27,6 +28,8 @@ SPECS = [
     replace(PRESETS["small"], drive="holonomic", capacity=1e3),
 ]
 BLOCK = Arena(obstacles=(Polygon(((4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0))),))
+
+ARENAS = [BLOCK, WORLDS["rooms"].function().arena, WORLDS["warehouse"].function().arena]
 
 
 def play(
@@ -55,7 +58,7 @@ def same(one, two):
     assert np.array_equal(one[2], two[2])
 
 
-@given(st.integers(0, 2**31), st.sampled_from(SPECS), st.sampled_from([None, BLOCK]))
+@given(st.integers(0, 2**31), st.sampled_from(SPECS), st.sampled_from([None, *ARENAS]))
 @settings(max_examples=25, deadline=None)
 def test_where_nothing_touches_the_engine_changes_nothing(crowd, seed, spec, arena):
     with_engine = play(crowd, seed, spec, arena, engine=True, interval=0.1)
@@ -163,8 +166,13 @@ def test_parked_bodies_are_static_and_moving_ones_have_their_mass(crowd):
     motion, robots, _ = crowd(10, 0, engine=True)
     bodies = motion._engine.bodies
     assert {body.body_type for body in bodies} == {pymunk.Body.STATIC}
+    before, heading = robots[3].position, robots[3].heading
     motion.depart(robots[3], (5.0, 5.0))
     motion.advance(0.1)
+    assert robots[3].heading != heading
+    assert bodies[3].body_type == pymunk.Body.STATIC  # it turns on the spot
+    while robots[3].position == before:
+        motion.advance(motion.now + motion.options.dt)
     assert bodies[3].body_type == pymunk.Body.DYNAMIC
     assert bodies[3].mass == pytest.approx(robots[3]._motion.spec.mass)
     motion.advance(inf)

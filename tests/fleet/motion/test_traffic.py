@@ -8,17 +8,21 @@ from math import dist, fsum, inf, pi
 
 import numpy as np
 import pytest
+from gaps import least_gap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fleet.energy import ExtraPower
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
+from worlds.catalogue import WORLDS
 from worlds.shapes import Polygon
 
 SMALL = replace(PRESETS["small"], capacity=1e4)
 BIG = replace(SMALL, radius=0.2)
 BLOCK = Arena(obstacles=(Polygon(((4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0))),))
+
+ARENAS = [BLOCK, *(WORLDS[name].function().arena for name in ("pit", "rooms", "warehouse"))]
 
 
 class Watch:
@@ -43,13 +47,7 @@ class Watch:
             moved = np.hypot(*(places - self.places).T).max()
             self.fastest = max(self.fastest, moved / (self.motion.now - before))
         self.places = places
-        away = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
-        np.fill_diagonal(away, inf)
-        self.gap = min(self.gap, away.min() - 2.0 * self.radius)
-        side = np.array([self.arena.width, self.arena.height])
-        self.gap = min(self.gap, (np.minimum(places, side - places) - self.radius).min())
-        for polygon in self.arena.obstacles:
-            self.gap = min(self.gap, polygon.distance(places).min() - self.radius)
+        self.gap = min(self.gap, least_gap(places, self.radius, self.arena))
         return ended
 
     def check(self, gap):
@@ -104,36 +102,44 @@ def test_reserved_robots_never_touch(crowd, spec, movers, engine):
     assert outcomes["arrived"] >= 140
     assert outcomes["arrived"] + outcomes["no path"] == 150
     assert all(trip.contacts == 0 for trip in watch.trips)
+    assert np.mean([trip.waited for trip in watch.trips]) < (0.5 if spec.radius < 0.2 else 3.0)
     assert watch.fastest <= spec.cruise * (1.0 + 1e-9)
 
 
 @given(
     st.integers(0, 2**31),
     st.sampled_from([0.05, 0.1, 0.2]),
-    st.sampled_from([None, BLOCK]),
+    st.sampled_from([None, *ARENAS]),
     st.sampled_from(["differential", "holonomic"]),
+    st.sampled_from([0.3, 1.0, 1e4]),
     st.booleans(),
     st.sampled_from([20.0, 1e4]),
     st.sampled_from([0.0, 0.05]),
+    st.booleans(),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_whatever_happens_nothing_sinks_in_and_nothing_is_lost(
-    crowd, seed, radius, arena, drive, reverse, capacity, halts
+    crowd, seed, radius, arena, drive, acceleration, reverse, capacity, halts, engine
 ):
     spec = RobotSpec(
-        radius=radius, drive=drive, reverse=reverse, capacity=capacity,
+        radius=radius, drive=drive, acceleration=acceleration, reverse=reverse, capacity=capacity,
         extra=ExtraPower(kinetic=True),
     )  # fmt: skip
-    motion, robots, rng = crowd(40, seed, spec, arena, engine=True)
+    motion, robots, rng = crowd(40, seed, spec, arena, engine=engine)
     watch = Watch(motion, robots, arena)
     work(watch, rng, 15, 40, halts=halts)
     watch.check(-0.001)
 
 
-@given(st.integers(0, 2**31), st.sampled_from([0.1, 0.2]), st.sampled_from([None, BLOCK]))
-@settings(max_examples=15, deadline=None)
-def test_in_free_traffic_bodies_touch_but_hardly_sink_in(crowd, seed, radius, arena):
-    spec = replace(SMALL, radius=radius)
+@given(
+    st.integers(0, 2**31),
+    st.sampled_from([0.1, 0.2]),
+    st.sampled_from([None, *ARENAS]),
+    st.sampled_from([1.0, 1e4]),
+)
+@settings(max_examples=10, deadline=None)
+def test_in_free_traffic_bodies_touch_but_hardly_sink_in(crowd, seed, radius, arena, acceleration):
+    spec = replace(SMALL, radius=radius, acceleration=acceleration)
     motion, robots, rng = crowd(40, seed, spec, arena, engine=True, traffic="free")
     watch = Watch(motion, robots, arena)
     outcomes = work(watch, rng, 25, 40)
@@ -273,7 +279,6 @@ def test_a_robot_that_dies_while_it_waits_is_known_to_others(crowd):
     assert any(trip.path == 0.0 and trip.energy_waiting > 0.0 for trip in watch.trips)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "served"), [(0.1, 1.0), (0.2, 0.995)])
 def test_tasks_are_served(crowd, radius, served):
     """One robot at a time: the third nearest of those that can go, as they believe."""
@@ -297,6 +302,44 @@ def test_tasks_are_served(crowd, radius, served):
         contacts += len(begun)
     assert contacts == 0
     assert arrived >= served * 2000
+
+
+def test_two_that_push_with_all_their_strength_hardly_sink_in(driving):
+    strong = replace(SMALL, drive="holonomic", acceleration=1e4)
+    for dt in (1.0 / 60.0, 1.0 / 240.0):
+        motion, robots = driving(
+            [(3.0, 5.0), (7.0, 5.0)], strong, engine=True, traffic="free", dt=dt, replans=0
+        )
+        watch = Watch(motion, robots)
+        motion.depart(robots[0], (6.0, 5.0))
+        motion.depart(robots[1], (4.0, 5.0))
+        while motion.moving:
+            watch.step()
+        watch.check(-0.001)
+        assert len(watch.trips) == 2
+        assert all(trip.contacts for trip in watch.trips)
+
+
+@pytest.mark.parametrize("engine", [True, False])
+def test_who_is_too_near_to_brake_is_stopped_by_the_body_in_its_way(driving, engine):
+    slow = replace(SMALL, acceleration=0.3)
+    motion, robots = driving(
+        [(2.0, 5.0), (5.0, 8.0)], slow, headings=[0.0, -pi / 2.0], engine=engine
+    )
+    watch = Watch(motion, robots)
+    motion.depart(robots[0], (8.0, 5.0))
+    motion.advance(1.0)
+    motion.depart(robots[1], (5.0, 2.0))
+    while robots[0].position[0] < 4.95:
+        watch.step()
+    motion.halt(robots[0])
+    while motion.moving:
+        watch.step()
+    watch.check(-0.001)
+    broken, late = watch.trips
+    assert broken.outcome == "broken down"
+    assert late.contacts > 0
+    assert late.outcome in ("arrived", "stuck")
 
 
 @pytest.mark.slow
