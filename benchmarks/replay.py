@@ -60,16 +60,21 @@ def warm(scenario, path, repeat):
     )
 
 
-def cold(arguments, repeat):
-    """Median wall time of a whole command [s]."""
-    times = []
+def cold(commands, repeat):
+    """Median wall and processor time [s] of whole commands, taken in turns."""
+    times = [[] for _ in commands]
     for _ in range(repeat + 1):
-        start = time.perf_counter()
-        subprocess.run(
-            [sys.executable, "-m", "fleet", "run", *arguments], check=True, capture_output=True
-        )
-        times.append(time.perf_counter() - start)
-    return median(times[1:])
+        for arguments, taken in zip(commands, times, strict=True):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            start = time.perf_counter()
+            subprocess.run(
+                [sys.executable, "-m", "fleet", "run", *arguments], check=True, capture_output=True
+            )
+            wall = time.perf_counter() - start
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            spent = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
+            taken.append((wall, spent))
+    return [[median(of) for of in zip(*taken[1:], strict=True)] for taken in times]
 
 
 def main():
@@ -92,8 +97,7 @@ def main():
         command = ["--robots", str(given.robots), "--seed", str(given.seed), "--motion", "physics"]
         command += [f"--set=world.width={side}", f"--set=world.height={side}"]
         command += ["--rounds", str(given.rounds)] if given.rounds else []
-        plain = cold(command, min(given.repeat, 3))
-        recorded = cold([*command, "--rrd", str(path)], min(given.repeat, 3))
+        plain, recorded = cold([command, [*command, "--rrd", str(path)]], given.repeat)
 
     print(
         f"{given.robots} robots, {summary.lifetime} rounds, {summary.messages} messages,"
@@ -108,10 +112,11 @@ def main():
     print(f"the recorder's own share          {1e3 * (kept - watched):7.1f} ms", end="")
     print(f"  {100.0 * (kept - watched) / base:+.1f} % of the run")
     print(f"the process that writes           {1e3 * writer:7.1f} ms, start and imports included")
-    print("\n(b) the whole command, cold         wall")
-    print(f"fleet run                         {plain:7.2f} s")
-    print(f"fleet run --rrd                   {recorded:7.2f} s", end="")
-    print(f"  {100.0 * (recorded / plain - 1.0):+.1f} %")
+    print("\n(b) the whole command, cold         wall   processor, all processes")
+    for name, (wall, spent) in (("fleet run", plain), ("fleet run --rrd", recorded)):
+        print(f"{name:33} {wall:7.2f} s {spent:7.2f} s")
+    more, worked = (100.0 * (r / p - 1.0) for r, p in zip(recorded, plain, strict=True))
+    print(f"{'recording adds':33} {more:+7.1f} % {worked:+7.1f} %")
     rounds = max(summary.lifetime, 1)
     print(f"\nfile {size / 1e6:.2f} MB, {size / 1e6 / rounds * 350.0:.2f} MB for 350 rounds")
 

@@ -10,8 +10,10 @@ import click
 from fleet import __version__
 
 COMMANDS = {
-    "list": ("fleet.cli.listing", "Protocols, metrics, worlds and motions, with their sources."),
+    "energy": ("fleet.cli.examining", "Test Eq. (1), energy linear in distance, against motion."),
+    "list": ("fleet.cli.listing", "All that a scenario can name, with its sources."),
     "paper": ("fleet.cli.papering", "Reproduce the paper: its figures, tables and claims."),
+    "picture": ("fleet.cli.picturing", "Draw a moment of a recording, or a clip of it."),
     "replay": ("fleet.cli.replaying", "Run one run of a study again, from its key."),
     "report": ("fleet.cli.reporting", "Write the figures and tables of a study as a page."),
     "run": ("fleet.cli.running", "Play one run and print its summary."),

@@ -8,13 +8,26 @@ import click
 
 from fleet.cli.failing import bad_input_exits
 
+TIMELINES = ("sim_time", "round", "msg")
+
 
 @click.command("view")
 @click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--web", is_flag=True, help="Serve it to a browser, on this machine only.")
-def command(recordings: tuple[Path, ...], web: bool) -> None:
+@click.option("--by", type=click.Choice(TIMELINES),
+              help="The timeline to scrub by at first.  [sim_time; several: round]")  # fmt: skip
+def command(recordings: tuple[Path, ...], web: bool, by: str | None) -> None:
     """Open recordings in the Rerun viewer; several are shown side by side."""
     from fleet.replay.view import view
+    from fleet.scenario.errors import bad
 
     with bad_input_exits():
-        view(recordings, web=web)
+        try:
+            view(recordings, web=web, timeline=by, tell=announce)
+        except ValueError as error:
+            raise bad("", str(error)) from error
+
+
+def announce(address: str) -> None:
+    """Say where to look."""
+    click.echo(f"Open {address}\nCtrl-C ends it.")

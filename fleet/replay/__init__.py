@@ -2,7 +2,7 @@
 
 Only this package knows Rerun, and loads it when it is needed: a run itself never does, for
 its recording is drawn by another process. Recordings are looked at with ``view.view``, drawn
-with ``picture.picture`` and ``picture.clip``, and read with ``readback.Recording``.
+with ``picture.picture`` and ``clip.clip``, and read with ``readback.Recording``.
 """
 
 from __future__ import annotations
@@ -20,23 +20,34 @@ __all__ = ["RerunRecorder", "recorder"]
 def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False) -> RerunRecorder:
     """An observer that records a run of ``scenario`` into a file, for a live viewer, or both.
 
+    The file's folder is made if there is none.
+
     Raises:
-        ValueError: there is nowhere to record to, or the file cannot be written.
+        BadInput: there is nowhere to record to, the file cannot be written, or no viewer can
+            be opened here.
     """
     import hashlib
     import json
 
     from fleet import __version__
     from fleet.replay.recording import RerunRecorder
+    from fleet.scenario.errors import bad
 
     described: dict[str, Any] = scenario.as_dict()
     named = json.dumps({"version": __version__, **described}, sort_keys=True, default=str)
-    return RerunRecorder(
-        path,
-        key=hashlib.sha256(named.encode()).hexdigest()[:16],
-        properties={"version": __version__, **described},
-        live=live,
-    )
+    try:
+        if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        return RerunRecorder(
+            path,
+            key=hashlib.sha256(named.encode()).hexdigest()[:16],
+            properties={"version": __version__, **described},
+            live=live,
+        )
+    except OSError as error:
+        raise bad("", f"cannot record to {path}: {error.strerror}") from error
+    except ValueError as error:
+        raise bad("", str(error)) from error
 
 
 def __getattr__(name: str) -> Any:

@@ -122,6 +122,9 @@ def _world(stage: Stage) -> rrb.View:
             )
         ]
     )
+    names = rr.Points2D.from_fields(  # in a colour that can be read, however low the battery
+        radii=0.001, colors=scheme.WINNER_TEXT, draw_order=26.0, show_labels=True
+    ).visualizer()
     return rrb.Spatial2DView(
         origin="/",
         name=stage.name,
@@ -130,7 +133,7 @@ def _world(stage: Stage) -> rrb.View:
         visual_bounds=_bounds(stage),
         overrides={
             stage(scheme.ROBOTS): _with_rim(stage.mark, 20.0),
-            stage(scheme.MOVERS): [*_with_rim(stage.mark, 24.0), nose],
+            stage(scheme.MOVERS): [*_with_rim(stage.mark, 24.0), nose, names],
         },
     )
 
@@ -149,7 +152,7 @@ def _with_rim(radius: float, order: float) -> list[rrb.Visualizer]:
         rr.Points2D.from_fields(
             radii=RIM * radius, colors=scheme.RIM_COLOUR, draw_order=order, show_labels=False
         ).visualizer(),
-        rr.Points2D.from_fields(draw_order=order + 1.0).visualizer(),
+        rr.Points2D.from_fields(draw_order=order + 1.0, show_labels=False).visualizer(),
     ]
 
 
@@ -163,7 +166,10 @@ def _phases(stage: Stage, timeline: str) -> rrb.Container:
             rrb.StateTimelineView(
                 origin=stage(scheme.PHASE), name=name, time_view=rrb.TimeAxis(view_range=span)
             )
-            for name, span in (("Phases, by sim_time", by_time), ("Phases, by msg", by_msg))
+            for name, span in (
+                ("Phases, by sim_time", by_time),
+                ("Phases, by msg or round", by_msg),
+            )
         ),
         active_tab=0 if timeline == scheme.SIM_TIME else 1,
     )

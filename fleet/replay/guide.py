@@ -39,8 +39,11 @@ The timeline is chosen beside the play button.
 | **white** arrow | the transmission at the cursor |
 | red target | the event; the circle is the search radius, {scene.search_radius:g} m |
 | yellow dashes | the straight line: Eq. (1) charges {scene.per_metre:.1f} J/m for it |
-| yellow line | where the robot drove |
+| lavender dashes | likewise to a place that is no event, where a robot is sent to carry \
+the event on, or to keep the fleet connected |
+| yellow line | where a robot drove |
 | hatched | the hole: no robot starts there; events happen there all the same |
+| solid block | an obstacle: robots drive around it, the radio passes |
 
 *Collector*: the robot that is told of the event. *Auctioneer*: where the search ends. \
 In the log, ×3 says that a frame was sent three times.

@@ -33,7 +33,7 @@ class Told(NamedTuple):
 
 
 class TripEnd(NamedTuple):
-    """A trip, as :class:`fleet.motion.Trip` has it."""
+    """A trip, as :class:`fleet.motion.Trip` has it; :data:`RELOCATED` if it was to no event."""
 
     robot: RobotId
     outcome: str
@@ -45,6 +45,8 @@ class TripEnd(NamedTuple):
     path: float  # [m]
     energy: float  # [J]
 
+
+RELOCATED = "relocated"  # the outcome of a trip to a place that is no event
 
 Entry: TypeAlias = tuple[Any, ...]
 """A happening: its name, the transmissions made before it, and what the teller is told."""

@@ -16,7 +16,6 @@ from fleet.replay.journal import Scene
 from fleet.replay.pages.counts import describe_counts
 from fleet.replay.pages.labels import HANG
 from fleet.replay.pages.lifetime import describe_lifetime
-from fleet.replay.pages.roles import TARGET
 from fleet.replay.pages.words import describe_phases
 from fleet.replay.shades import TABLE
 from fleet.replay.story import Story
@@ -66,6 +65,7 @@ def draw_scene(stream: Stream, story: Story) -> None:
         _style_lines(stream, f"{scheme.UDG}/{part}", 0.8 * line, scheme.UDG_COLOUR, 1.0)
         _style_lines(stream, f"{scheme.ROUTING}/{part}", 1.4 * line, scheme.ROUTING_COLOUR, 2.0)
     _style_lines(stream, scheme.STRAIGHT, 1.6 * line, scheme.WINNER_COLOUR, 9.0)
+    _style_lines(stream, scheme.RELOCATION, 1.6 * line, scheme.RELOCATION_COLOUR, 9.0)
     _style_lines(stream, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
     _style_lines(stream, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
     for order, kind in enumerate(scheme.KIND_COLOURS):
@@ -97,18 +97,15 @@ def draw_scene(stream: Stream, story: Story) -> None:
             radii=0.45 * mark, colors=scheme.EVENT_COLOUR, draw_order=27.0, show_labels=False
         ),
         rr.Ellipses2D.from_fields(
-            half_sizes=[[TARGET * mark, TARGET * mark]],
             line_radii=2.2 * line,
             colors=scheme.EVENT_COLOUR,
             show_labels=False,
         ),
     )
-    radius = scene.search_radius
-    if radius > 0.0:
+    if scene.search_radius > 0.0:
         stream.static(
             scheme.SEARCH,
             rr.Ellipses2D.from_fields(
-                half_sizes=[[radius, radius]],
                 line_radii=1.2 * line,
                 colors=scheme.SEARCH_COLOUR,
                 draw_order=3.0,

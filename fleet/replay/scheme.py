@@ -31,6 +31,7 @@ ROUTING: Final = "world/links/routing"  # likewise: the graph that messages trav
 LINK_PARTS: Final = ("lasting", "resting", "moving")  # for some trips, for a trip, on a trip
 SEARCH: Final = "world/search_radius"
 STRAIGHT: Final = "world/trips/straight"  # the line that Eq. (1) charges for
+RELOCATION: Final = "world/trips/relocation"  # the same, to a place that is no event
 DRIVEN: Final = "world/trips/driven"
 MESSAGES: Final = "world/messages"  # and /<kind>: what has been sent in this conversation
 LOST: Final = "world/messages/lost"  # heard by nobody
@@ -106,6 +107,7 @@ AUCTIONEER_COLOUR: Final = 0xCC79A7FF
 CALLED_COLOUR: Final = 0x8A5B80FF
 WINNER_COLOUR: Final = 0xF0E442FF
 WINNER_TEXT: Final = 0xCDB300FF  # the same, dark enough to be read on white
+RELOCATION_COLOUR: Final = 0xA6B4FFFF  # lavender
 GROUND_COLOUR: Final = (11, 14, 20)
 TEXT_COLOUR: Final = 0x93A0B4FF
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from math import ceil
+from typing import Literal, NamedTuple, TypeAlias, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -35,6 +36,20 @@ THEMES = {
     "light": Theme("#ffffff", "#1b222c", "#eceff3", "#ffffff", 0.62, (0.28, 0.8)),
     "dark": Theme("#10151d", "#dfe5ee", "#1a2230", "#0b0e14", 1.0, (0.4, 0.8)),
 }
+
+
+LEFT, ACROSS = 0.085, 0.76  # the floor, in shares of a figure's width
+BELOW, ABOVE = 0.78, 0.3  # the floor, for axis and legend, and for the caption [in]
+LINES: tuple[tuple[str, str, int, Literal["-", "--"]], ...] = (  # where and what, in the legend
+    (scheme.DRIVEN, "way driven", scheme.WINNER_COLOUR, "-"),
+    (scheme.STRAIGHT, "straight, Eq. (1)", scheme.WINNER_COLOUR, "--"),
+    (scheme.RELOCATION, "relocation", scheme.RELOCATION_COLOUR, "--"),
+    (scheme.ROUTING, "link", scheme.ROUTING_COLOUR, "-"),
+    (scheme.DEAD, "off the air", scheme.CROSS_COLOUR, "-"),
+)
+
+Box: TypeAlias = tuple[float, float, float, float]
+"""Left, bottom, width and height, in shares of a figure."""
 
 
 class Sketch:
@@ -76,15 +91,32 @@ class Sketch:
                 self._lines(f"{path}/{part}", width, colour, alpha=alpha)
         self._event()
         self._lines(scheme.STRAIGHT, 0.9, scheme.WINNER_COLOUR, outlined=True)
+        self._lines(scheme.RELOCATION, 0.9, scheme.RELOCATION_COLOUR, outlined=True)
         self._lines(scheme.DRIVEN, 1.8, scheme.WINNER_COLOUR, outlined=True)
-        drawn = self._arrows()
+        kinds = self._arrows()
         self._discs(scheme.RINGS, 1.75, 4.0, rim=1.35)
         self._discs(scheme.ROBOTS, 1.0, 5.0)
         self._discs(scheme.MOVERS, 1.0, 6.0)
         self._noses()
         self._lines(scheme.DEAD, 1.2, scheme.CROSS_COLOUR, order=7.0)
         self._labels()
-        self._legend(drawn)
+        self._legend(kinds)
+
+    def height(self, width: float) -> float:
+        """How high a figure of that width is, all in inches."""
+        return BELOW + self._floor_height(width) + ABOVE
+
+    def boxes(self, width: float) -> tuple[Box, Box]:
+        """Where in a figure of that width the floor is, and the scale of energies."""
+        height, floor = self.height(width), self._floor_height(width)
+        return (
+            (LEFT, BELOW / height, ACROSS, floor / height),
+            (LEFT + ACROSS + 0.026, (BELOW + 0.2 * floor) / height, 0.022, 0.6 * floor / height),
+        )
+
+    def _floor_height(self, width: float) -> float:
+        across, up = (side + 0.02 * max(self._size) for side in self._size)
+        return ACROSS * width * min(up / across, 2.0)
 
     def colour_bar(self, axes: Axes) -> None:
         """What colour means how much energy, into axes of its own."""
@@ -243,12 +275,24 @@ class Sketch:
             Line2D([], [], color=rgb(scheme.arrow_colour(scheme.messages(kind))), lw=2.0)
             for kind in kinds
         ]
-        if handles:
-            self._axes.legend(
-                handles, [scheme.KIND_LABELS.get(kind, kind) for kind in kinds], ncols=len(kinds),
-                loc="upper center", bbox_to_anchor=(0.5, -0.09), frameon=False, fontsize=7,
-                labelcolor=self._theme.ink, handlelength=1.4, columnspacing=1.2,
-            )  # fmt: skip
+        words = [scheme.KIND_LABELS.get(kind, kind) for kind in kinds]
+        for path, word, colour, style in LINES:
+            if any(
+                len(self._get(part, "LineStrips2D:strips")) for part in (path, f"{path}/lasting")
+            ):
+                handles.append(Line2D([], [], color=rgb(colour), linestyle=style, lw=1.4))
+                words.append(word)
+        if len(self._points(scheme.EVENT, "Points2D:positions")):
+            ring = Line2D([], [], marker="o", markersize=6, markerfacecolor="none", linewidth=0.0)
+            ring.set_color(rgb(scheme.EVENT_COLOUR))
+            handles.append(ring)
+            words.append("event, search radius" if self._search > 0.0 else "event")
+        self._axes.legend(
+            handles, words, ncols=ceil(len(words) / 2), loc="upper center",
+            bbox_to_anchor=(0.5, -0.34 / self._axes.bbox.height * self._axes.figure.dpi),
+            bbox_transform=self._axes.transAxes, frameon=False, fontsize=6.5,
+            labelcolor=self._theme.ink, handlelength=1.6, columnspacing=1.4,
+        )  # fmt: skip
 
 
 def rgb(colour: int, light: float = 1.0) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fleet.replay.columns import Moment
 from fleet.replay.journal import Scene, Told, TripEnd
 from fleet.replay.stream import Stream
-from protocols.messages import Point, RobotId
+from protocols.messages import Award, Point, RobotId
 
 
 class UnderWay(NamedTuple):
@@ -23,6 +23,7 @@ class UnderWay(NamedTuple):
     origin: Point  # [m]
     site: Point  # [m]
     departed: float  # [s]
+    errand: bool = False  # to a place that is no event
 
 
 @dataclass(slots=True)
@@ -104,10 +105,7 @@ class Page:
     def told(self, at: Moment, line: Told) -> None:
         """A transmission was made."""
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """A conversation is over."""
 
     def broken(self, at: Moment, event: int, reason: str) -> None:
@@ -117,13 +115,13 @@ class Page:
         """An event is "served", "expired" or "lost"; the story knows it no more."""
 
     def departed(self, at: Moment, robot: RobotId) -> None:
-        """A robot sets off."""
+        """A robot sets off; the story knows where to, and whether that is an event."""
 
     def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
         """Poses (k, 6) of those under way, up to now; the moment's time is that of the last."""
 
     def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
-        """A robot came to rest."""
+        """A robot came to rest: at an event, short of it, or elsewhere, see :data:`RELOCATED`."""
 
     def finished(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
         """Nothing more happens; without a summary, the run broke off."""

@@ -178,7 +178,9 @@ def _open_window(recording: Path) -> None:
             reason = lines[0] if lines else f"exit code {code}"
             if "DISPLAY" in reason:
                 reason = "there is no screen"
-            raise ValueError(f"the viewer cannot open a window here: {reason}; try the web viewer")
+            raise ValueError(
+                f"the viewer cannot open a window here: {reason}; try --web, or fleet picture"
+            )
 
 
 def _answers(port: int, process: subprocess.Popen[bytes]) -> bool:

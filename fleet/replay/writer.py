@@ -17,7 +17,7 @@ from fleet.replay.columns import Moment
 from fleet.replay.journal import Batch, Told, TripEnd, receive
 from fleet.replay.story import Conversation, Page, Story, UnderWay
 from fleet.replay.stream import Stream
-from protocols.messages import Point, RobotId
+from protocols.messages import Award, Bid, Move, Point, RobotId
 
 BACKLOG = 64  # frames that wait to be drawn before the run must wait too
 CHUNK_ROUNDS = 50  # that are written together: a chunk costs 2 kB, however little is in it
@@ -97,12 +97,15 @@ class Teller:
 
     def _awarded(
         self, time: float, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
+        bids: list[tuple[float, RobotId]], moves: list[tuple[RobotId, Point]],
     ) -> None:  # fmt: skip
         self._story.now = time
         at = self._moment(self._number)
+        award = Award(
+            winner, auctioneer, tuple(map(Bid._make, bids)), tuple(map(Move._make, moves))
+        )
         for page in self._pages:
-            page.awarded(at, event, winner, auctioneer, bids)
+            page.awarded(at, event, award)
 
     def _broken(self, time: float, event: int, reason: str) -> None:
         self._story.now = time
@@ -118,10 +121,10 @@ class Teller:
             page.over(at, event, outcome)
         self._story.talks.pop(event, None)
 
-    def _departed(self, time: float, event: int, robot: RobotId, site: Point) -> None:
+    def _departed(self, time: float, event: int, robot: RobotId, site: Point, errand: bool) -> None:
         story = self._story
         story.now = time
-        story.under_way[robot] = UnderWay(event, story.at(robot), site, time)
+        story.under_way[robot] = UnderWay(event, story.at(robot), site, time, errand)
         at = self._moment(self._number)
         for page in self._pages:
             page.departed(at, robot)

@@ -32,7 +32,7 @@ class Bodies(Page):
     def __init__(self) -> None:
         self._rest: list[tuple[Moment, Floats, Floats, NDArray[np.bool_]]] = []
         self._moving: list[Frames] = []
-        self._names: list[tuple[Moment, tuple[int, ...]]] = []
+        self._names: list[tuple[Moment, list[str]]] = []
         self._dead: list[tuple[Moment, NDArray[np.float64]]] = []
         self._poses: Poses = {}
 
@@ -100,7 +100,9 @@ class Bodies(Page):
     def _stand(self, at: Moment) -> None:
         """A frame of the movers when there is one more of them, or one less."""
         self._moving.append(still(self._poses, at))
-        self._names.append((at, tuple(self._poses)))
+        ways = self._story.under_way
+        names = [f"r{robot}{' relocates' * ways[robot].errand}" for robot in sorted(self._poses)]
+        self._names.append((at, names))
 
     def _at_rest(self, at: Moment) -> None:
         story = self._story
@@ -128,13 +130,13 @@ class Bodies(Page):
         )
         if not self._names:
             return
-        changes, robots = zip(*self._names, strict=True)
+        changes, names = zip(*self._names, strict=True)
         stream.rows(
             MOVERS,
             changes,
             column(
                 rr.Points2D.descriptor_labels(),
-                texts([f"r{robot}" for row in robots for robot in row]),
-                [len(row) for row in robots],
+                texts([name for row in names for name in row]),
+                [len(row) for row in names],
             ),
         )

@@ -7,11 +7,11 @@ from math import dist
 import rerun as rr
 
 from fleet.replay.columns import Moment, column, texts
-from fleet.replay.journal import Told, TripEnd
+from fleet.replay.journal import RELOCATED, Told, TripEnd
 from fleet.replay.scheme import CARD
 from fleet.replay.story import Conversation, Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import RobotId
+from protocols.messages import Award, Bid, RobotId
 
 MANY_BIDS = 5  # shown
 MANY_ASKED = 12  # named
@@ -57,17 +57,21 @@ class Cards(Page):
             self._told[line.event].append(self._search(talk, line.sender))
             self._draw(at, line.event, f"Event {line.event + 1}", asked)
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Who bid what, and who goes."""
         story, talk, told = self._story, self._story.talks[event], self._told[event]
         if not talk.calls:
-            told.append(self._search(talk, auctioneer))
+            told.append(self._search(talk, award.auctioneer))
         asked = tuple(talk.parents)
         if asked:
-            told.append(f"**r{auctioneer}** asked {_names(asked)}.")
+            told.append(f"**r{award.auctioneer}** asked {_names(asked)}.")
+        for robot, (x, y) in award.moves:
+            why = "to carry the event on" if award.winner is None else "to keep the fleet connected"
+            told.append(f"**r{robot}** is sent to ({x:.2f}, {y:.2f}) m, {why}.")
+        winner, bids = award.winner, award.bids
+        if winner is None and award.moves:
+            self._draw(at, event, f"Event {event + 1} is carried on")
+            return
         if winner is None:
             told.append("**Nobody can go**: all who were asked believe that they lack the energy.")
             self._draw(at, event, f"Event {event + 1}: nobody can go")
@@ -85,6 +89,8 @@ class Cards(Page):
 
     def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """What it came to."""
+        if trip.outcome == RELOCATED:
+            return
         straight = dist(trip.origin, trip.site)
         foreseen = self._story.scene.per_metre * straight
         over = f" ({100.0 * (trip.energy / foreseen - 1.0):+.1f} %)" if foreseen > 0.0 else ""
@@ -137,7 +143,7 @@ class Cards(Page):
         how = f" ({greedy} greedy, {face} face)" if face else ", all greedy"
         return f"The search took **{hops}**{how} to **r{found}**, {away:.2f} m from the event."
 
-    def _table(self, talk: Conversation, winner: RobotId, bids: list[tuple[float, RobotId]]) -> str:
+    def _table(self, talk: Conversation, winner: RobotId, bids: tuple[Bid, ...]) -> str:
         story = self._story
         title = f"{len(bids)} bids, lowest wins" if len(bids) > 1 else "the only bid"
         rows = [f"| {title} | cost | way | holds | would be left |", "|---|---|---|---|---|"]
@@ -156,5 +162,6 @@ class Cards(Page):
 def _names(robots: tuple[RobotId, ...]) -> str:
     """Some robots by name."""
     named = ", ".join(f"r{robot}" for robot in robots[:MANY_ASKED])
-    more = len(robots) - MANY_ASKED
-    return f"{len(robots)} neighbours ({named}{f' and {more} more' if more > 0 else ''})"
+    if len(robots) > MANY_ASKED:
+        named += f" and {len(robots) - MANY_ASKED} more"
+    return f"{len(robots)} neighbour{'s' * (len(robots) != 1)} ({named})"

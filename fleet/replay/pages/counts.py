@@ -27,7 +27,7 @@ from fleet.replay.scheme import (
 )
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import KINDS, RobotId
+from protocols.messages import KINDS, Award
 
 FORESEEN_COLOUR = 0x9AA5B5FF
 
@@ -53,10 +53,7 @@ class Counts(Page):
         """One more."""
         self._kinds[line.kind] += 1
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Messages are counted when the talking is over."""
         self._messages.append((at, tuple(float(self._kinds[kind]) for kind in KINDS)))
         self._kinds.clear()

@@ -16,7 +16,7 @@ Poses: TypeAlias = dict[RobotId, tuple[float, ...]]
 
 
 class Frames(NamedTuple):
-    """Rows of poses: at each of k moments, those of everybody under way."""
+    """Rows of poses: at each of k moments, those of everybody under way, by robot."""
 
     when: Index  # (k,)
     lengths: NDArray[np.intp]  # (k,) robots under way at each moment
@@ -25,7 +25,7 @@ class Frames(NamedTuple):
 
 def still(poses: Poses, at: Moment) -> Frames:
     """One frame: everybody where they were last seen."""
-    rows = np.array(list(poses.values())).reshape(-1, len(SAMPLE_FIELDS))
+    rows = np.array([poses[robot] for robot in sorted(poses)]).reshape(-1, len(SAMPLE_FIELDS))
     return Frames(Index.of([at]), np.array([len(rows)]), rows)
 
 

@@ -40,7 +40,7 @@ class Lifetime(Page):
 
     def __init__(self) -> None:
         self._levels: list[NDArray[np.uint8]] = []  # (n,) by round
-        self._driving: list[NDArray[np.float64]] = []
+        self._driving: list[NDArray[np.float64]] = []  # poses of trips not over yet
         self._paths: list[NDArray[np.float32]] = []
         self._cursors: list[tuple[Moment, int]] = []
         self._due = 16
@@ -71,8 +71,8 @@ class Lifetime(Page):
             mine = poses[poses[:, 0] == trip.robot, 2:4]
             picked = mine[:: max(1, len(mine) // CORNERS)]
             self._paths.append(np.array([trip.origin, *picked, trip.end], np.float32))
-        if not self._story.under_way:
-            self._driving = []
+        since = min((way.departed for way in self._story.under_way.values()), default=np.inf)
+        self._driving = [samples for samples in self._driving if samples[-1, 1] > since]
 
     def finished(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
         """Draw it all."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, pairs, texts
-from fleet.replay.journal import Told, TripEnd
+from fleet.replay.journal import RELOCATED, Told, TripEnd
 from fleet.replay.pages.labels import Labels
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
@@ -19,7 +20,7 @@ from fleet.replay.scheme import (
 )
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import Point, RobotId
+from protocols.messages import Award, Point, RobotId
 
 TARGET = 2.3  # radius of the ring around an event, in radii of a robot
 MANY_NAMES = 16  # at a time
@@ -49,7 +50,7 @@ class Roles(Page):
         """The event and who is told of it."""
         self._event = event
         self._held, self._names = {}, {}
-        self._labels.clear()
+        self._labels.clear(self._story.positions)
         sites = self._story.sites
         for site in sites.values():
             self._labels.keep_off(site)
@@ -66,26 +67,26 @@ class Roles(Page):
             self._assume(line.sender, "auctioneer", once=True)
             self._draw_names(at)
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """The winner, and where the search ended if nobody called."""
         if event == self._event:
-            self._assume(auctioneer, "auctioneer", once=True)
-            if winner is not None:
-                self._assume(winner, "winner")
+            self._assume(award.auctioneer, "auctioneer", once=True)
+            if award.winner is not None:
+                self._assume(award.winner, "winner")
             self._draw_names(at)
 
     def departed(self, at: Moment, robot: RobotId) -> None:
-        """A mover carries its own name."""
+        """A mover carries its own name; other names keep off its way."""
+        _, (x, y), (to_x, to_y), *_ = self._story.under_way[robot]
+        for share in (0.2, 0.4, 0.6, 0.8):
+            self._labels.keep_off((x + share * (to_x - x), y + share * (to_y - y)))
         if self._held.pop(robot, None):
             del self._names[f"r{robot}"]
             self._draw_names(at)
 
     def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The one who went, where it stands now."""
-        if event == self._event:
+        if event == self._event and trip.outcome != RELOCATED:
             self._assume(trip.robot, "winner")
             self._draw_names(at)
 
@@ -104,12 +105,11 @@ class Roles(Page):
                 EVENT,
                 when,
                 column(rr.Points2D.descriptor_positions(), centres, counts),
-                column(rr.Ellipses2D.descriptor_centers(), centres, counts),
+                *_circles(centres, counts, TARGET * self._story.mark),
             )
-            if self._story.scene.search_radius > 0.0:
-                stream.rows(
-                    SEARCH, when, column(rr.Ellipses2D.descriptor_centers(), centres, counts)
-                )
+            radius = self._story.scene.search_radius
+            if radius > 0.0:
+                stream.rows(SEARCH, when, *_circles(centres, counts, radius))
         if self._name_rows:
             when, rows = zip(*self._name_rows, strict=True)
             counts = [len(row) for row in rows]
@@ -142,3 +142,15 @@ class Roles(Page):
 
     def _draw_names(self, at: Moment) -> None:
         self._name_rows.append((at, list(self._names.values())))
+
+
+def _circles(centres: pa.Array, counts: list[int], radius: float) -> list[rr.ComponentColumn]:
+    """Circles of one radius [m]; each needs a size of its own to be drawn."""
+    return [
+        column(rr.Ellipses2D.descriptor_centers(), centres, counts),
+        column(
+            rr.Ellipses2D.descriptor_half_sizes(),
+            pairs(np.full((len(centres), 2), radius)),
+            counts,
+        ),
+    ]

@@ -10,7 +10,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, colours, column, pairs
-from fleet.replay.journal import Told, TripEnd
+from fleet.replay.journal import RELOCATED, Told, TripEnd
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
     CALLED_COLOUR,
@@ -26,7 +26,7 @@ from fleet.replay.scheme import (
 )
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import KINDS, RobotId
+from protocols.messages import KINDS, Award, RobotId
 
 RIM = 1.7  # where arrows begin and end, in radii of a robot from its middle
 LANE = 0.4  # how far they keep to the right, in radii of a robot
@@ -129,19 +129,16 @@ class Talk(Page):
         )
         self._involve(at, line)
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """The winner stands out."""
         self._talking.discard(event)
         for growing in self._arrows.values():
             growing.complete(at)
         after = at._replace(msg=at.msg + 1)  # at the last message, it still stands out
         self._packets.append((after, []))
-        self._part(auctioneer, AUCTIONEER_COLOUR)
-        if winner is not None:
-            self._part(winner, WINNER_COLOUR)
+        self._part(award.auctioneer, AUCTIONEER_COLOUR)
+        if award.winner is not None:
+            self._part(award.winner, WINNER_COLOUR)
         self._draw_rings(at)
 
     def broken(self, at: Moment, event: int, reason: str) -> None:
@@ -160,8 +157,9 @@ class Talk(Page):
 
     def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The one who went, where it stands now."""
-        self._part(trip.robot, WINNER_COLOUR)
-        self._draw_rings(at)
+        if trip.outcome != RELOCATED:
+            self._part(trip.robot, WINNER_COLOUR)
+            self._draw_rings(at)
 
     def send(self, stream: Stream) -> None:
         """Arrows, packets, rings."""

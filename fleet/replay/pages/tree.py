@@ -14,7 +14,7 @@ from fleet.replay.journal import Told
 from fleet.replay.scheme import AUCTIONEER_COLOUR, CALLED_COLOUR, TREE, WINNER_TEXT, kind_colour
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import Point, RobotId
+from protocols.messages import Award, Point, RobotId
 
 WIDTH, HEIGHT = 480.0, 150.0  # of the plane that trees are laid out on
 MANY_STEPS = 32  # in which a big tree grows
@@ -44,25 +44,23 @@ class Tree(Page):
         """The table is cleared."""
         self._rows.append((Grown(at, [], [], [], []), {}))
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Now the whole tree is known: tell how it grew."""
-        talk = self._story.talks[event]
+        talk, auctioneer = self._story.talks[event], award.auctioneer
         steps = grow(talk.lines, auctioneer, at.round)
         parents = talk.parents
         places = lay_out(parents, auctioneer, self._story)
         stride = max(1, ceil(len(steps) / MANY_STEPS))
         self._rows += [(step, places) for step in steps[::-stride][::-1]]
-        costs = {robot: cost for cost, robot in bids}
+        costs = {robot: cost for cost, robot in award.bids}
+        chosen = {award.winner: "wins"} | {robot: "is sent ahead" for robot, _ in award.moves}
         robots = [auctioneer, *(robot for robot in places if robot != auctioneer)]
         final = Grown(
             at,
             robots,
-            [_label(robot, costs.get(robot), robot == winner) for robot in robots],
+            [_label(robot, costs.get(robot), chosen.get(robot, "")) for robot in robots],
             [
-                WINNER_TEXT if robot == winner
+                WINNER_TEXT if robot in chosen
                 else AUCTIONEER_COLOUR if robot == auctioneer
                 else kind_colour("bid") if robot in costs
                 else CALLED_COLOUR
@@ -130,7 +128,7 @@ def grow(lines: list[Told], auctioneer: RobotId, round_: int) -> list[Grown]:
                     labels[robot], paint[robot] = f"r{robot}", CALLED_COLOUR
                     links.append((line.sender, robot))
         elif line.kind == "bid" and line.bidder is not None:
-            labels[line.bidder] = _label(line.bidder, line.cost, winner=False)
+            labels[line.bidder] = _label(line.bidder, line.cost)
             paint[line.bidder] = kind_colour("bid")
         else:
             continue
@@ -178,6 +176,6 @@ def lay_out(
     }
 
 
-def _label(robot: RobotId, cost: float | None, winner: bool) -> str:
+def _label(robot: RobotId, cost: float | None, chosen: str = "") -> str:
     bid = "" if cost is None else f"  {cost:.1f}"
-    return f"r{robot}{bid}{'  wins' if winner else ''}"
+    return f"r{robot}{bid}{chosen and f'  {chosen}'}"

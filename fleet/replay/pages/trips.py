@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, column, segments, strips
 from fleet.replay.journal import TripEnd
-from fleet.replay.scheme import DRIVEN, STRAIGHT
+from fleet.replay.scheme import DRIVEN, RELOCATION, STRAIGHT
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
@@ -28,7 +28,10 @@ class Trips(Page):
         self._dashes: dict[RobotId, FloatArray] = {}  # (d, 2, 2) [m]
         self._driven: dict[RobotId, FloatArray] = {}  # (c, 2) [m]
         self._ended: set[RobotId] = set()
+        self._errands: set[RobotId] = set()  # those whose dashes lead to no event
+        self._elsewhere = False  # whether any such are drawn
         self._straight_rows: list[tuple[Moment, list[FloatArray]]] = []
+        self._errand_rows: list[tuple[Moment, list[FloatArray]]] = []
         self._driven_rows: list[tuple[Moment, list[FloatArray]]] = []
 
     def started(self, story: Story) -> None:
@@ -40,14 +43,16 @@ class Trips(Page):
         for robot in self._ended:
             del self._dashes[robot], self._driven[robot]
         if self._ended:
-            self._ended.clear()
             self._draw_straight(at)
+            self._errands -= self._ended
+            self._ended.clear()
             self._draw_driven(at)
 
     def departed(self, at: Moment, robot: RobotId) -> None:
         """The straight line is known."""
         trip = self._story.under_way[robot]
         self._ended.discard(robot)
+        (self._errands.add if trip.errand else self._errands.discard)(robot)
         self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._story.mark / 0.1)
         self._driven[robot] = np.array([trip.origin])
         self._draw_straight(at)
@@ -74,10 +79,12 @@ class Trips(Page):
 
     def send(self, stream: Stream) -> None:
         """Dashes and trails."""
-        if self._straight_rows:
-            when, rows = zip(*self._straight_rows, strict=True)
+        for path, dashed in ((STRAIGHT, self._straight_rows), (RELOCATION, self._errand_rows)):
+            if not dashed:
+                continue
+            when, rows = zip(*dashed, strict=True)
             stream.rows(
-                STRAIGHT,
+                path,
                 when,
                 column(
                     rr.LineStrips2D.descriptor_strips(),
@@ -102,10 +109,15 @@ class Trips(Page):
                     [len(row) for row in rows],
                 ),
             )
-        self._straight_rows, self._driven_rows = [], []
+        self._straight_rows, self._errand_rows, self._driven_rows = [], [], []
 
     def _draw_straight(self, at: Moment) -> None:
-        self._straight_rows.append((at, list(self._dashes.values())))
+        to_events = [d for robot, d in self._dashes.items() if robot not in self._errands]
+        elsewhere = [d for robot, d in self._dashes.items() if robot in self._errands]
+        self._straight_rows.append((at, to_events))
+        if elsewhere or self._elsewhere:
+            self._errand_rows.append((at, elsewhere))
+        self._elsewhere = bool(elsewhere)
 
     def _draw_driven(self, at: Moment) -> None:
         self._driven_rows.append((at, list(self._driven.values())))

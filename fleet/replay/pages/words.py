@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, texts
-from fleet.replay.journal import Told, TripEnd
+from fleet.replay.journal import RELOCATED, Told, TripEnd
 from fleet.replay.scheme import (
     EVENT_COLOUR,
     KIND_COLOURS,
@@ -18,12 +18,13 @@ from fleet.replay.scheme import (
     MOTION,
     MOTION_COLOUR,
     PHASE,
+    RELOCATION_COLOUR,
     WINNER_TEXT,
     kind_colour,
 )
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
-from protocols.messages import RobotId
+from protocols.messages import Award, RobotId
 
 SAID, DECIDED, FAILED = "TRACE", "INFO", "WARN"  # log levels
 PLAIN = 0x93A0B4FF
@@ -63,13 +64,15 @@ class Words(Page):
         colour = WINNER_TEXT if line.kind == "assign" else kind_colour(line.kind)
         self._lines.append((at, say(line), SAID, colour if line.heard else LOST_COLOUR))
 
-    def awarded(
-        self, at: Moment, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]],
-    ) -> None:  # fmt: skip
+    def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Who goes."""
+        winner, bids = award.winner, award.bids
+        for robot, (x, y) in award.moves:
+            self._decide(at, f"r{robot} is sent to ({x:.2f}, {y:.2f}) m", RELOCATION_COLOUR)
+        if winner is None and award.moves:
+            return
         if winner is None:
-            self._decide(at, f"r{auctioneer} finds nobody who can go", EVENT_COLOUR, FAILED)
+            self._decide(at, f"r{award.auctioneer} finds nobody who can go", EVENT_COLOUR, FAILED)
             return
         among = f"of {len(bids)} bids" if len(bids) > 1 else "the only bid"
         cost = next((f"{cost:.2f}, " for cost, robot in bids if robot == winner), "")
@@ -91,10 +94,12 @@ class Words(Page):
     def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """How it went."""
         took = f"{trip.ended - trip.departed:.2f} s, {trip.path:.2f} m, {trip.energy:.2f} J"
-        arrived = trip.outcome == "arrived"
+        relocated = trip.outcome == RELOCATED
+        arrived = trip.outcome == "arrived" or relocated
         self._decide(
             at,
-            f"r{trip.robot} arrived: {took}" if arrived
+            f"r{trip.robot} has relocated: {took}" if relocated
+            else f"r{trip.robot} arrived: {took}" if arrived
             else f"r{trip.robot} did not arrive ({trip.outcome}): {took}",
             PLAIN if arrived else EVENT_COLOUR,
             DECIDED if arrived else FAILED,

@@ -117,6 +117,24 @@ def test_labels_keep_off_the_scales_beside_the_floor():
         assert 0.5 * 14 * 0.21 - 0.2 <= x <= 10.2 - 0.5 * 14 * 0.21
 
 
+def test_labels_stay_in_sight():
+    for anchor in ((5.0, 0.1), (5.0, 9.9), (0.1, 9.9)):
+        labels = Labels((10.0, 10.0))
+        labels.clear()
+        for _ in range(3):
+            _, y = labels.place(*anchor, 10)
+            assert 0.21 - 1e-9 <= y - 0.2 <= 10.0
+
+
+def test_labels_hide_few_robots():
+    row = np.column_stack([np.linspace(3.0, 7.0, 30), np.full(30, 5.34)])
+    for robots, expected in (([], 5.34), (row, 4.66)):
+        labels = Labels((10.0, 10.0))
+        labels.clear(robots)
+        _, y = labels.place(5.0, 5.0, 8)
+        assert y - 0.2 == pytest.approx(expected)
+
+
 def test_dashes_cover_half_of_the_line():
     broken = dashes((0.0, 0.0), (3.0, 4.0), 0.1)
     lengths = np.hypot(*(broken[:, 1] - broken[:, 0]).T)

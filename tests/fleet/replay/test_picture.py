@@ -8,7 +8,7 @@ import rerun as rr
 from PIL import Image
 
 from fleet.replay import scheme
-from fleet.replay.picture import clip, picture
+from fleet.replay.picture import picture
 from fleet.replay.readback import Recording
 
 
@@ -56,10 +56,11 @@ def test_a_stream_too(stream, tmp_path):
     assert painted(image, scheme.EVENT_COLOUR) > 50
 
 
-def test_a_clip_has_a_frame_for_every_step(rounds, tmp_path):
-    out = clip(rounds.path, tmp_path / "c.gif", start=3, stop=9, step=2, dots_per_inch=50)
-    with Image.open(out) as frames:
-        assert frames.n_frames == 4
+def test_nothing_is_cut_off(rounds, tmp_path):
+    """All that is drawn lies within the picture: its outermost dots are the ground's."""
+    image = pixels(picture(rounds.path, {"round": 4}, tmp_path / "p.png"))
+    edges = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
+    assert (edges == 255).all()
 
 
 @pytest.mark.parametrize(
@@ -83,13 +84,11 @@ def test_themes_that_are_not_there(rounds, tmp_path):
         picture(rounds.path, {"round": 1}, tmp_path / "p.png", theme="pink")
 
 
-@pytest.mark.parametrize(
-    ("start", "stop", "step", "complaint"),
-    [(5, 3, 1, "expected the end last"), (1, 2, 0, "expected both > 0"), (1, 10**6, 10**5, "no m")],
-)
-def test_clips_that_cannot_be(rounds, tmp_path, start, stop, step, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        clip(rounds.path, tmp_path / "c.gif", start=start, stop=stop, step=step)
+def test_kinds_of_pictures_that_are_not_there(rounds, tmp_path):
+    with pytest.raises(
+        ValueError, match=r"p\.doc: no such kind of picture; expected one of .*\.png"
+    ):
+        picture(rounds.path, {"round": 1}, tmp_path / "p.doc")
 
 
 class TestFilesThatAreNoRecordings:

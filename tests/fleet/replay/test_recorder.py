@@ -19,6 +19,7 @@ from fleet.replay import recorder, scheme
 from fleet.replay.readback import Recording
 from fleet.replay.recording import RerunRecorder
 from fleet.replay.view import viewer_binary, viewer_environment
+from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import scenario_from
 
 from .conftest import record, simulation
@@ -191,6 +192,20 @@ def test_bad_input(tmp_path, arguments, complaint):
     given = {"path": tmp_path / "run.rrd", "key": "k", "properties": {}, **arguments}
     with pytest.raises(ValueError, match=complaint):
         RerunRecorder(given.pop("path"), **given)
+
+
+def test_a_user_is_told_where_nothing_can_be_recorded(tmp_path):
+    scenario = scenario_from({"motion": "straight"})
+    (tmp_path / "file").touch()
+    for path in (Path("/proc/nothing/here.rrd"), tmp_path / "file" / "here.rrd", tmp_path):
+        with pytest.raises(BadInput, match=f"cannot record to {path}: "):
+            recorder(scenario, path)
+
+
+def test_the_folder_of_a_recording_is_made(tmp_path):
+    watching = recorder(scenario_from({"motion": "straight"}), tmp_path / "a" / "b" / "run.rrd")
+    simulation([watching], rounds=1).run()
+    assert events(Recording(watching.path)) == 1
 
 
 def test_the_key_is_that_of_the_scenario(tmp_path):

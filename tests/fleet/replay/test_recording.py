@@ -318,3 +318,15 @@ class TestStream:
         for event, _, time, _ in stream.witness.raised:
             shown = stream.recording.at(scheme.EVENT, "Points2D:positions", SIM_TIME, time)
             assert np.abs(shown - event.position).sum(axis=1).min() < 10**-DECIMALS
+
+    @pytest.mark.parametrize("path", [scheme.EVENT, scheme.SEARCH])
+    def test_every_open_event_has_its_circle(self, stream, path):
+        several = 0
+        for *_, time, _ in stream.witness.raised:
+            sites = stream.recording.at(scheme.EVENT, "Points2D:positions", SIM_TIME, time)
+            centres = stream.recording.at(path, "Ellipses2D:centers", SIM_TIME, time)
+            sizes = stream.recording.at(path, "Ellipses2D:half_sizes", SIM_TIME, time)
+            assert centres.tolist() == sites.tolist()
+            assert len(sizes) == len(sites)
+            several += len(sites) > 1
+        assert several

@@ -169,3 +169,24 @@ def test_live_and_into_a_file_at_once(viewer, tmp_path):
     assert rounds_seen.end == 5
     assert Recording(path).properties["summary"]["lifetime"] == summary.lifetime == 5
     assert viewer.problems() == []
+
+
+def test_live_and_from_the_file_look_the_same(viewer, tmp_path):
+    path = tmp_path / "run.rrd"
+    simulation([RerunRecorder(path, key="from-file", properties={})], rounds=8).run()
+    viewer.open(path)
+    viewer.go("round", sequence=6)
+    expected = [np.array(viewer.picture(name)) for name in ("World", "Event")]
+    live = RerunRecorder(None, key="live-again", properties={}, live=viewer.url, flush_rounds=1)
+    simulation([live], rounds=8).run()
+    deadline = time.monotonic() + 20.0
+    while time.monotonic() < deadline:
+        found = [r for r in viewer.state().recordings if "live-again" in str(r.store_id)]
+        if found and any(t.name == "round" and t.end == 8 for t in found[0].timelines):
+            break
+        time.sleep(0.1)
+    viewer.go("round", sequence=6)
+    assert "live-again" in str(viewer.state().active_recording)
+    shown = [np.array(viewer.picture(name)) for name in ("World", "Event")]
+    for one, other in zip(shown, expected, strict=True):
+        assert (np.abs(one.astype(int) - other) > 24).any(axis=2).mean() < 1e-3
