@@ -79,7 +79,12 @@ class _Chain:
         return far
 
     def is_clear(self, at: int) -> bool:
-        """Whether no other corner lies where the short cut would lead through, or on it."""
+        """Whether no other corner lies where the short cut would lead through, or on it.
+
+        A triangle has no corner to spare.
+        """
+        if self._left[self._loop[at]] <= 3:
+            return False
         a, b, c = (self.nodes[k] for k in (self._before[at], at, self._after[at]))
         (x0, x1), (y0, y1) = ((min(v), max(v)) for v in zip(a, b, c, strict=True))
         for column in range(x0 // BIN, x1 // BIN + 1):
@@ -87,7 +92,9 @@ class _Chain:
                 for k in self._bins.get((column, row), ()):
                     p = self.nodes[k]
                     if (
-                        _turn(a, b, p) <= 0
+                        x0 <= p[0] <= x1
+                        and y0 <= p[1] <= y1
+                        and _turn(a, b, p) <= 0
                         and _turn(b, c, p) <= 0
                         and _turn(c, a, p) <= 0
                         and k not in {self._before[at], at, self._after[at]}

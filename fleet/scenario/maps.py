@@ -1,13 +1,11 @@
 """Occupancy maps from the user's files, as ROS's map_server keeps them: YAML and an image.
 
-The YAML file has seven plain keys, so a reader of its own does: every value is checked here as
-it is, where a YAML library would first guess at types (it takes 1e-2 for text, and no for
-false). The format: https://wiki.ros.org/map_server.
+The format: https://wiki.ros.org/map_server. All values are read as text and checked here as they
+stand: YAML would take 1e-2 for text, and no for false.
 """
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -20,8 +18,6 @@ from worlds.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
 REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 KEYS = (*REQUIRED, "mode")
-ENTRY = re.compile(r"(\w+)\s*:(?:\s+(.*))?$")
-ITEM = re.compile(r"-\s+(.*)$")
 MOST_CELLS = 100_000_000
 _PLAIN = {"1": "L", "P": "RGB"}  # the modes of images that have as many shades as these
 
@@ -41,47 +37,38 @@ def occupancy_grid(value: Any, key: str) -> OccupancyGrid:
     return _grid(path, key, image, _modified(path, key), _modified(image, key))
 
 
-def read_yaml(path: Path, key: str) -> dict[str, str | list[str]]:
-    """The keys of a map's YAML file, values as they stand there: text, or a list of texts.
+def read_yaml(path: Path, key: str) -> dict[str, Any]:
+    """The keys of a map's YAML file; values are text, or lists of text, as they stand there.
 
     Raises:
         BadInput: the file is not there, or has something else in it than a map's keys.
     """
+    import yaml
+
     try:
-        lines = path.read_text("utf-8").splitlines()
+        found = yaml.load(path.read_text("utf-8"), Loader=yaml.BaseLoader)  # noqa: S506  # makes text alone
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise bad(key, f"{str(path)!r} cannot be read: {reason}") from error
-    found: dict[str, str | list[str]] = {}
-    listed: list[str] | None = None
-    for number, line in enumerate(lines, 1):
-        text = re.sub(r"(^|\s)#.*", "", line).strip()
-        if text in {"", "---", "..."}:
-            continue
-        if (item := ITEM.match(text)) and listed is not None:
-            listed.append(_unquoted(item[1]))
-            continue
-        entry = ENTRY.match(text)
-        if entry is None or line[:1].isspace():
-            raise bad(key, f"{path}:{number}: {text!r} is no line of a map; expected key: value")
-        name, rest = entry[1], (entry[2] or "").strip()
+    except yaml.YAMLError as error:
+        raise bad(key, f"{path}{_line(error)}: {_problem(error)}; expected YAML") from error
+    if not isinstance(found, dict):
+        raise bad(key, f"{path}: is no table of keys; expected {', '.join(REQUIRED)}")
+    for name in found:
         if name not in KEYS:
-            raise bad(key, f"{path}:{number}: {unknown('key', name, KEYS)}")
-        if name in found:
-            raise bad(key, f"{path}:{number}: {name} is there twice; expected it once")
-        listed = None if rest else []
-        bracketed = rest.startswith("[") and rest.endswith("]")
-        if bracketed:
-            found[name] = [_unquoted(part.strip()) for part in rest[1:-1].split(",")]
-        else:
-            found[name] = _unquoted(rest) if listed is None else listed
+            raise bad(key, f"{path}: {unknown('key', name, KEYS)}")
     if missing := [name for name in REQUIRED if not found.get(name)]:
         raise bad(key, f"{path}: {missing[0]} is missing; it is required")
     return found
 
 
-def _unquoted(text: str) -> str:
-    return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" else text
+def _line(error: Exception) -> str:
+    mark = getattr(error, "problem_mark", None)
+    return f":{mark.line + 1}" if mark else ""
+
+
+def _problem(error: Exception) -> str:
+    return getattr(error, "problem", None) or "it cannot be read"
 
 
 def _image(path: Path, key: str) -> Path:
@@ -131,7 +118,7 @@ def _grid(path: Path, key: str, image: Path, _written: int, _painted: int) -> Oc
     return OccupancyGrid(cells[::-1].copy(), resolution)
 
 
-def _check_origin(origin: str | list[str], path: Path, key: str) -> None:
+def _check_origin(origin: Any, path: Path, key: str) -> None:
     """It places the map in a larger frame. Here that of the map is the only one."""
     try:
         pose = [float(part) for part in origin] if isinstance(origin, list) else []

@@ -1,0 +1,90 @@
+"""How far a prediction is from what was drained: bias, RMSE, R², and the ratio of the sums."""
+
+from __future__ import annotations
+
+from math import inf, nan
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fleet.study.statistics import CONFIDENCE, Interval
+
+RESAMPLES = 2000
+
+
+class Accuracy(NamedTuple):
+    """A prediction [J] against what was drained, over so many trips."""
+
+    trips: int
+    drained: float  # mean [J]
+    bias: float  # mean of predicted - drained [J]; negative: too little is predicted
+    rmse: float  # [J]
+    r2: float  # 1 - squared errors over squared deviations from the mean; may be negative
+    ratio: float  # sum of drained over sum of predicted
+
+
+def accuracy(drained: ArrayLike, predicted: ArrayLike) -> Accuracy:
+    """Compare a prediction with what was drained, trip by trip [J]."""
+    truth, said = np.asarray(drained, float), np.asarray(predicted, float)
+    if len(truth) == 0:
+        return Accuracy(0, nan, nan, nan, nan, nan)
+    errors = said - truth
+    squares = float(((truth - truth.mean()) ** 2).sum())
+    return Accuracy(
+        trips=len(truth),
+        drained=float(truth.mean()),
+        bias=float(errors.mean()),
+        rmse=float(np.sqrt((errors**2).mean())),
+        r2=1.0 - float((errors**2).sum()) / squares if squares > 0.0 else nan,
+        ratio=float(truth.sum() / said.sum()) if said.sum() > 0.0 else inf,
+    )
+
+
+def ratio_interval(
+    drained: ArrayLike, predicted: ArrayLike, groups: ArrayLike, seed: int = 0
+) -> Interval:
+    """The ratio of the sums, with a percentile bootstrap interval over groups.
+
+    Trips of one placement are alike, so placements are drawn again, not trips: Davison and
+    Hinkley, Bootstrap Methods and their Application, 1997, section 3.8.
+    """
+    truth, said = np.asarray(drained, float), np.asarray(predicted, float)
+    _, which = np.unique(np.asarray(groups), return_inverse=True)
+    above, below = np.bincount(which, truth), np.bincount(which, said)
+    ratio = float(truth.sum() / said.sum()) if said.sum() > 0.0 else nan
+    if len(above) < 2:
+        return Interval(ratio, nan, nan)
+    weights = resampled(len(above), seed)
+    found = (weights @ above) / np.maximum(weights @ below, 1e-300)
+    low, high = np.quantile(found, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE])
+    return Interval(ratio, float(low), float(high))
+
+
+def resampled(groups: int, seed: int) -> NDArray[np.float64]:
+    """How often each group is drawn in each resample (:data:`RESAMPLES`, groups)."""
+    rng = np.random.default_rng(seed)
+    return rng.multinomial(groups, np.full(groups, 1.0 / groups), RESAMPLES).astype(float)
+
+
+def usable_from(
+    straight: ArrayLike,
+    drained: ArrayLike,
+    predicted: ArrayLike,
+    tolerance: float,
+    width: float = 0.25,
+) -> float:
+    """From which straight distance [m] on a prediction is within a relative ``tolerance``.
+
+    The ratio of the sums is taken over bins of ``width`` [m]: the distance is the lower edge of
+    the first bin from which on none is off by more. inf: the last bin is.
+    """
+    bins = np.floor(np.asarray(straight, float) / width + 1e-9).astype(int)
+    above = np.bincount(bins, np.asarray(drained, float))
+    below = np.bincount(bins, np.asarray(predicted, float))
+    there = below > 0.0
+    off = np.zeros(len(below), bool)
+    off[there] = np.abs(above[there] / below[there] - 1.0) > tolerance
+    if off[-1]:
+        return inf
+    return float(width * (np.flatnonzero(off)[-1] + 1)) if off.any() else 0.0

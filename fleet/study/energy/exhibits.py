@@ -1,0 +1,77 @@
+"""What the report shows: numbers, how they are drawn, and what is said of them."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from fleet.study.statistics import Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of an exhibit's table: its name with its unit, and how numbers are written."""
+
+    name: str
+    style: str = ""  # of format()
+
+
+@dataclass(frozen=True, slots=True)
+class Exhibit:
+    """A figure, the numbers that it shows, and a caption."""
+
+    name: str  # of its files
+    caption: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[Any]]
+    figure: Figure | None = None
+
+    def write_csv(self, folder: Path) -> None:
+        """The numbers as they are; an interval takes three columns."""
+        with (folder / f"{self.name}.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            wide = [isinstance(value, Interval) for value in self.rows[0]] if self.rows else []
+            head = [
+                name
+                for column, interval in zip(self.columns, wide, strict=True)
+                for name in (
+                    [column.name, f"{column.name}, low", f"{column.name}, high"]
+                    if interval
+                    else [column.name]
+                )
+            ]
+            writer.writerow(head)
+            for row in self.rows:
+                writer.writerow([x for v in row for x in (v if isinstance(v, Interval) else [v])])
+
+    def cells(self) -> list[list[str]]:
+        """The rows as the page has them."""
+        return [
+            [written(value, column.style) for value, column in zip(row, self.columns, strict=True)]
+            for row in self.rows
+        ]
+
+
+def written(value: Any, style: str) -> str:
+    """A value for people: an interval as its estimate with its bounds."""
+    if isinstance(value, Interval):
+        if not isfinite(value.value):
+            return "–"
+        if not isfinite(value.low):
+            return signed(format(value.value, style))
+        low, high = format(value.low, style), format(value.high, style)
+        return signed(f"{format(value.value, style)} [{low}, {high}]")
+    if isinstance(value, float):
+        return signed(format(value, style)) if isfinite(value) else "–"
+    return format(value, style if isinstance(value, int) else "")
+
+
+def signed(text: str) -> str:
+    """With minus signs for hyphens."""
+    return text.replace("-", "−")

@@ -1,0 +1,183 @@
+"""What the study says in the end, in numbers and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isinf
+
+import numpy as np
+
+from fleet.robot import RobotSpec
+from fleet.study.energy.accuracy import Accuracy, accuracy, ratio_interval, usable_from
+from fleet.study.energy.campaign import PAPER, PLACES, PROTOCOLS
+from fleet.study.energy.launching import launch_cost
+from fleet.study.energy.lives import BASELINE, Life, find
+from fleet.study.energy.models import CORRECTED, EQ1, fit, held_out
+from fleet.study.energy.trips import Trips, closure
+from fleet.study.statistics import Interval
+
+OPEN = PLACES[0].name
+WORLDS = ("pit", "rooms", "warehouse")  # with things to drive around
+LONG = 3.5  # [m] of trips that are long
+TOLERABLE = 0.10  # share by which Eq. (1) may be off and still be used
+SOURCES = {"path": "Eq. (1) on the planned path", "corrected": "the corrected model"}
+CLOSED = 1e-3  # share of its energy that a trip's parts may leave unexplained
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """The study in a few numbers. Ratios are of what was drained to what Eq. (1) says."""
+
+    within_10: float  # straight distance from which on Eq. (1) is within 10 % [m]
+    within_5: float  # [m]
+    longest: float  # that was driven [m]
+    asked: Interval  # ratio over the trips of lifetimes on the open floor
+    asked_trips: int
+    asked_mean: float  # their straight distance [m]
+    by_protocol: Mapping[str, float]  # their ratio
+    by_world: Mapping[str, float]  # ratio of long single tasks among obstacles
+    launch: Interval  # [J]
+    launch_formula: float  # by the drive law [J]
+    corrected: Accuracy  # of Eq. (1) on the planned path and a launch, on held-out placements
+    eq1: Accuracy  # of Eq. (1), on the same
+    asked_corrected: Accuracy  # the two of them, on the trips of lifetimes
+    asked_eq1: Accuracy
+    overrated: Mapping[str, float]  # lifetime by Eq. (1) alone over that of driving robots
+    closure: float  # largest share of a trip's energy that its parts leave unexplained
+    trips: int  # over which that was checked
+
+
+def findings(single: Trips, streams: Trips, lived: Trips, listed: Sequence[Life]) -> Findings:
+    """From the trips of single tasks, streams and lifetimes, and the lifetimes themselves."""
+    paper = single.where(setting=PAPER).arrived()
+    asked = lived.where(place=OPEN).arrived()
+    long = single.take(single["straight"] >= LONG).arrived()
+    return Findings(
+        within_10=usable_from(paper["straight"], paper["drained"], paper.eq1, TOLERABLE),
+        within_5=usable_from(paper["straight"], paper["drained"], paper.eq1, 0.5 * TOLERABLE),
+        longest=float(paper["straight"].max()),
+        asked=ratio_interval(asked["drained"], asked.eq1, asked["seed"]),
+        asked_trips=len(asked),
+        asked_mean=float(np.mean(asked["straight"])),
+        by_protocol=_ratios({name: asked.where(protocol=name) for name in PROTOCOLS}),
+        by_world=_ratios({name: long.where(setting=name) for name in WORLDS}),
+        launch=fit(CORRECTED, paper).coefficients[0],
+        launch_formula=launch_cost(RobotSpec()),
+        corrected=held_out(CORRECTED, paper)[1],
+        eq1=held_out(EQ1, paper)[1],
+        asked_corrected=accuracy(asked["drained"], fit(CORRECTED, paper).predict(asked)),
+        asked_eq1=accuracy(asked["drained"], asked.eq1),
+        overrated={
+            life.protocol: life.means["lifetime"].value / driven.means["lifetime"].value
+            for life in listed
+            if life.bids == "as in the paper"
+            and (driven := find(listed, life.place, life.protocol, BASELINE))
+        },
+        closure=max(closure(trips) for trips in (single, streams, lived)),
+        trips=len(single) + len(streams) + len(lived),
+    )
+
+
+def paragraph(found: Findings) -> str:
+    """When the linear assumption may be used and when not, from what was measured."""
+    asked = f"the {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, that"
+    protocols = ", ".join(f"{name} {_more(r)}" for name, r in found.by_protocol.items())
+    worlds = ", ".join(f"{name} {_more(r)}" for name, r in found.by_world.items())
+    fits = abs(found.asked.value - 1.0) <= TOLERABLE
+    return (
+        f"Eq. (1), energy linear in the straight distance, may be used for long trips over an open"
+        f" floor: {_usable(found.within_10, 'a tenth', found.longest)},"
+        f" and {_usable(found.within_5, 'a twentieth', found.longest)}."
+        f" It may {'also' if fits else 'not'} be used for what the protocols ask for: {asked}"
+        f" whole lifetimes were made of drained {_more(found.asked.value)} than it says"
+        f" ({protocols}). Single trips of {LONG:g} m and more among obstacles drained: {worlds}."
+        f" What it leaves out comes with every launch, not with every metre: turning, speeding up"
+        f" and braking cost {found.launch.value:.2f} J"
+        f" [{found.launch.low:.2f}, {found.launch.high:.2f}], however short the way"
+        f" ({found.launch_formula:.2f} J by the drive law)."
+        f" With this much added, and the planned path for the straight line, R² ="
+        f" {found.corrected.r2:.4f} and the RMSE {found.corrected.rmse:.2f} J on tasks that it was"
+        f" not fitted on, {found.asked_corrected.r2:.4f} and {found.asked_corrected.rmse:.2f} J on"
+        f" the protocols’ trips; as it stands {found.eq1.r2:.3f} and {found.eq1.rmse:.2f} J,"
+        f" {found.asked_eq1.r2:.3f} and {found.asked_eq1.rmse:.2f} J."
+        f"{_overrated(found.overrated)}"
+    ).replace("-", "−")
+
+
+def on_bids(listed: Sequence[Life]) -> str:
+    """What bids by the corrected model are worth on the open floor."""
+    said, changes = [], []
+    for protocol in PROTOCOLS:
+        base, other = (find(listed, OPEN, protocol, bids) for bids in (BASELINE, "corrected"))
+        if base is None or other is None:
+            continue
+        before, after = base.means, other.means
+        said.append(
+            f"{protocol} {before['failed'].value:.1f} and {after['failed'].value:.1f} a lifetime,"
+            f" {before['unbroken'].value:.0f} and {after['unbroken'].value:.0f} events before the"
+            f" first"
+        )
+        changes.append(_gain(other))
+    if not said:
+        return ""
+    return (
+        "Some robots set out and do not arrive, their battery being empty. If they bid by Eq. (1),"
+        f" and if by the corrected model, on the open floor: {'; '.join(said)}. The lifetime, up"
+        f" to the first event that nobody takes, changes by {min(changes):+.0f} % to"
+        f" {max(changes):+.0f} %. It is no measure of this: if a robot dies on its way another one"
+        " is sent, and the event counts as served, so whoever takes a chance lives longer by it."
+        f" Over all places and protocols {_changed(listed, 'path')}, and"
+        f" {_changed(listed, 'corrected')}."
+    ).replace("-", "−")
+
+
+def _changed(listed: Sequence[Life], bids: str) -> str:
+    """How often the lifetime is another one than with bids by Eq. (1), and where the most."""
+    mine = [life for life in listed if life.bids == bids]
+    found = [life.differences["lifetime"] for life in mine]
+    longer = sum(difference.low > 0.0 for difference in found)
+    shorter = sum(difference.high < 0.0 for difference in found)
+    best = max(mine, key=_gain)
+    return (
+        f"bids by {SOURCES[bids]} make it longer in {longer} of {len(mine)} cases and shorter in"
+        f" {shorter}, at best by {_gain(best):+.0f} % ({best.place}, {best.protocol})"
+    )
+
+
+def _gain(life: Life) -> float:
+    """By how much the lifetime is longer than with bids by Eq. (1) [%]."""
+    change = life.differences["lifetime"].mean
+    return 100.0 * change / (life.means["lifetime"].value - change)
+
+
+def on_closure(found: Findings) -> str:
+    """Whether the parts add up."""
+    verdict = "add up to" if found.closure <= CLOSED else "do NOT add up to"
+    return (
+        f"Over all {found.trips:,} trips the parts {verdict} what the batteries lost: the largest"
+        f" gap is {found.closure:.0e} of a trip’s energy, where {CLOSED:g} is tolerated."
+    ).replace("e-", "e−")
+
+
+def _usable(distance: float, tolerance: str, longest: float) -> str:
+    if isinf(distance):
+        return f"it is nowhere within {tolerance}, up to {longest:.0f} m"
+    return f"from {distance:g} m on it is within {tolerance} of what is drained"
+
+
+def _overrated(ratios: Mapping[str, float]) -> str:
+    if not ratios:
+        return ""
+    said = ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items())
+    return (
+        f" Networks simulated with Eq. (1) alone live longer than those that drive: {said} times."
+    )
+
+
+def _ratios(trips: Mapping[str, Trips]) -> dict[str, float]:
+    return {n: accuracy(some["drained"], some.eq1).ratio for n, some in trips.items() if len(some)}
+
+
+def _more(ratio: float) -> str:
+    return f"{100.0 * abs(ratio - 1.0):.0f} % {'more' if ratio >= 1.0 else 'less'}"
