@@ -117,7 +117,7 @@ class TestDispatcher:
     """Assigning together what is open: the centralised baseline of streams."""
 
     def test_events_are_assigned_together_and_nobody_twice(self):
-        simulation, summary, log = played(
+        simulation, summary, _ = played(
             protocol="assignment", motion="straight", seed=2,
             time=stream(rate=3.0, duration=60.0), robot={"capacity": 1e4},
         )  # fmt: skip
@@ -126,7 +126,7 @@ class TestDispatcher:
         assert summary.served > 150
         assert summary.stream.conflicts == 0
         waits = [task.taken - task.raised for task in simulation.book.tasks if task.offers == 1]
-        assert 0.0 < min(waits)
+        assert min(waits) > 0.0
         assert max(wait for wait in waits if wait < 1e9) <= 1.0 + 1e-9
 
     def test_together_costs_less_than_one_after_another(self):
