@@ -55,7 +55,7 @@ class Crew:
         self._true_links = bool(observers) and radio.takes_time
         self._blackouts: list[Blackout] = []
         self._idle = fleet.spec.extra.idle  # [W]
-        self._paid = 0.0  # until when parked robots have paid idle power [s]
+        self._paid = [0.0] * len(fleet.robots)  # until when each has paid for standing [s]
 
     def slice_end(self, now: float, due: float) -> float:
         """How far to drive before links must be looked at again, at most to ``due`` [s]."""
@@ -71,8 +71,9 @@ class Crew:
             self._seen[robot.id].position = robot.position
         if self._blackouts:
             self._listen_anew(now)
-        if self._idle:
-            self._pay_idle(now)
+        for id in arrived:
+            self._paid[id] = now
+        self.stand(now)
         self._radio.refresh(moved, now)
         self._refreshed = now
         if self._observers and moved:
@@ -80,10 +81,25 @@ class Crew:
 
     def freshen(self, now: float) -> None:
         """Before anybody talks: links that are too old are brought up to date."""
-        if self._idle:
-            self._pay_idle(now)
+        self.stand(now)
         if now - self._refreshed >= REFRESH and self._motion.moving:
             self.follow(now)
+
+    def stand(self, now: float) -> None:
+        """Robots that stand pay idle power up to now; those that cannot are gone.
+
+        Under way it is motion that pays. Ask for this before somebody sets off.
+        """
+        if not self._idle:
+            return
+        for robot in self._motion.moving:
+            self._paid[robot.id] = now
+        for robot in self._fleet.robots:
+            if robot.alive and self._paid[robot.id] < now:
+                robot.battery.drain(self._idle * (now - self._paid[robot.id]))
+                self._paid[robot.id] = now
+                if robot.battery.charge == 0.0:
+                    self.bury(robot)
 
     def bury(self, robot: Robot) -> None:
         """The robot is gone: its battery is empty, or it broke down altogether."""
@@ -124,17 +140,6 @@ class Crew:
         elif listed and not robot.on_air:
             self.on_air.remove(robot.id)
             self._radio.silence(robot)
-
-    def _pay_idle(self, now: float) -> None:
-        """Parked robots pay for standing; those that cannot are gone."""
-        energy = self._idle * (now - self._paid)
-        self._paid = now
-        driving = {robot.id for robot in self._motion.moving}
-        for robot in self._fleet.robots:
-            if robot.alive and robot.id not in driving:
-                robot.battery.drain(energy)
-                if robot.battery.charge == 0.0:
-                    self.bury(robot)
 
     def _show(self, moved: Iterable[Robot], now: float) -> None:
         if self._true_links:

@@ -101,6 +101,7 @@ class Simulation:
             self._begin()
             while not self._over:
                 self._go_on()
+            self._crew.stand(self.now)
             for robot in list(self._since):
                 self._release(self.fleet.robots[robot])
             summary = self._summary(time.perf_counter() - started)
@@ -281,6 +282,7 @@ class Simulation:
 
     def _send(self, robot: Robot, task: Task) -> None:
         """The robot sets off."""
+        self._crew.stand(self.now)
         task.state, task.taken = State.TAKEN, self.now
         robot.engaged = True
         self._since[robot.id] = self.now
@@ -293,6 +295,7 @@ class Simulation:
         robot = self.fleet.robots[move.robot]
         if robot.engaged or not robot.able or not robot.alive:
             return False
+        self._crew.stand(self.now)
         self.tally.relocations += 1
         robot.engaged = True
         self._since[robot.id] = self.now

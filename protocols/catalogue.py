@@ -58,7 +58,7 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
 }
 
 METRICS: dict[str, MetricEntry] = {
-    "company-share": MetricEntry(metrics.CompanyShare, "cost-share, with company"),
+    "company-share": MetricEntry(metrics.CompanyShare, "m·d/E_R^b, with company: docs/rfta3.md"),
     "cost-over-left": MetricEntry(
         metrics.cost_over_left, f"{PAPER}, section 6, read as a quotient"
     ),

@@ -60,26 +60,34 @@ def most_cost_times_left(robot: Robot, site: Point) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompanyShare:
-    """Smallest share of the battery spent, those with company close by first: m·d/E_R·(1 + a/l).
+    """Least spent for what the battery holds, those with company close by first:
+    m·d/E_R^b·(1 + a/l).
 
-    a is the distance to the nearest neighbour, l a length: a robot that stands beside another
-    leaves no gap, one that stands alone does.
+    b weighs balance against thrift: 0 is the cost, 1 the share of the battery. a is the distance
+    to the nearest neighbour, l a length: a robot that stands beside another leaves no gap, one
+    that stands alone does.
 
     Raises:
-        ValueError: the length is not positive.
+        ValueError: the length is not positive, or the balance negative.
     """
 
     length: float = 0.3  # l [m]
+    balance: float = 0.5  # b
 
     def __post_init__(self) -> None:
         if not self.length > 0.0:
             raise ValueError(f"length is {self.length}; expected more than 0")
+        if not self.balance >= 0.0:
+            raise ValueError(f"balance is {self.balance}; expected 0 or more")
 
     def __call__(self, robot: Robot, site: Point) -> float:
-        """The bid's cost, without unit."""
+        """The bid's cost [J^(1 − b)]."""
+        if not robot.energy > 0.0:
+            return inf
         here = robot.position
         alone = min((dist(here, there) for there in robot.neighbours.values()), default=0.0)
-        return cost_share(robot, site) * (1.0 + alone / self.length)
+        spent: float = robot.cost_to(site) / robot.energy**self.balance
+        return spent * (1.0 + alone / self.length)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,14 +4,15 @@ RFTA2 and RFTA2GE send whoever would have most energy left, however far away; th
 was found, usually the nearest, may not even bid; and life ends with the first neighbourhood
 that is spent. RFTA3 keeps their search and their auction and changes four things:
 
-1. A bid is the share of its battery that a robot would spend, smaller for robots that leave
-   company close by: thrift before balance.
+1. A bid is what the trip costs over the root of what the battery holds, less for robots that
+   leave company close by: thrift before balance.
 2. The call carries the caller's own bid, and only better ones are sent: the auctioneer
    competes, and most of the silence is agreement.
 3. A robot whose departure would cut its neighbours off from one another stays, as long as
    anybody else can go.
-4. While nobody can, the call reaches twice as far, up to the whole component. If the component
-   is but a splinter of the network, one of its robots carries the event on towards it.
+4. If the best bid is a poor one, the call goes out once more, a hop further, for better ones.
+   While nobody can go, it reaches twice as far, up to the whole component. If the component is
+   but a splinter of the network, one of its robots carries the event on towards it.
 
 So an event is served whenever any robot of the component can serve it.
 """
@@ -60,14 +61,16 @@ def rfta3(
     *,
     search: Search = TWO_SR,
     metric: Metric = COMPANY,
+    content: float = 5.0,
     spare: int = 4,
     carry: int = 10,
 ) -> Conversation:
     """Route to the event, then auction; ask farther, and those less dispensable, as need be.
 
-    For up to ``spare`` hops only robots bid that the network can spare; then all do, ring by
-    ring. A component of fewer than ``carry`` robots in which nobody can go sends one of them
-    towards the event, to find the others.
+    A bid of neighbours above ``content``, in the metric's unit, is asked to be bettered by their
+    neighbours. For up to ``spare`` hops only robots bid that the network can spare; then all do,
+    ring by ring. A component of fewer than ``carry`` robots in which nobody can go sends one of
+    them towards the event, to find the others.
     """
     found = yield from find(view, source, event, search)
     reached = 0
@@ -75,6 +78,9 @@ def rfta3(
         hops, reached, before = 1, 0, -1
         while hops <= most and reached > before:
             tree, bids = yield from ring(view, found, event, metric, hops, eligible)
+            if hops == 1 and bids and min(bids).cost > content:
+                wider, more = yield from ring(view, found, event, metric, 2, eligible, min(bids))
+                tree, bids = {**tree, **wider}, [*bids, *more]
             if bids:
                 return (yield from award(found, tree, bids))
             hops, reached, before = 2 * hops, len(tree), reached
@@ -95,22 +101,28 @@ def ring(
     metric: Metric,
     hops: int,
     eligible: Callable[[Robot], bool],
+    best: Bid | None = None,
 ) -> Ring:
-    """Call ``hops`` deep for bids better than the callers' own; who was reached, and the bids."""
+    """Call ``hops`` deep for bids better than the callers' own, and than the ``best`` that there
+    is; who was reached, and the bids.
+    """
 
     def own(robot: RobotId) -> Bid | None:
         me = view[robot]
         return offer(me, event, metric) if eligible(me) else None
 
-    tree = yield from call(view, auctioneer, AuctionRules(hops=hops), own)
+    def to_beat(robot: RobotId) -> Bid | None:
+        return min((bid for bid in (own(robot), best) if bid is not None), default=None)
+
+    tree = yield from call(view, auctioneer, AuctionRules(hops=hops), to_beat)
     offers = []
     for robot, caller in tree.items():
-        bid, limit = own(robot), own(caller)
+        bid, limit = own(robot), to_beat(caller)
         if bid is not None and (limit is None or bid < limit):
             offers.append(bid)
     bids = yield from aggregate(auctioneer, tree, offers)
     mine = own(auctioneer)
-    return tree, bids if mine is None else [*bids, mine]
+    return tree, bids if mine is None or best is not None else [*bids, mine]
 
 
 def carry_on(view: View, found: RobotId, event: Event, metric: Metric) -> Auction:

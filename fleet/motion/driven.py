@@ -23,7 +23,6 @@ from fleet.motion.law import fine_substeps, law_of
 from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
 from fleet.motion.planning import Planner
-from fleet.motion.rest import Rest
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
@@ -108,7 +107,6 @@ class DrivenMotion:
         self._engine = self._make_engine(robots) if self._with_engine else None
         self._movers = Movers(self._law, self._planner.floor, self._engine)
         self._facing = [robot.heading for robot in robots]  # [rad], not wrapped
-        self._rested = Rest(robots, self.spec.extra.idle * self.options.dt)
 
     def _make_engine(self, robots: Sequence[Robot]) -> Engine:
         from fleet.motion.engine import Engine
@@ -123,17 +121,18 @@ class DrivenMotion:
         options = self.options
         if robot.id in self._under_way:
             return inf
+        straight = self._eq1 * dist(robot.position, site)
         if options.belief == "straight" and not options.reachability:
-            return self._eq1 * dist(robot.position, site)
+            return straight
         plan = self._planner.plan(robot.id, robot.position, site)
         if plan.pieces is None:
             return inf
-        if options.belief == "straight":
-            return self._eq1 * dist(robot.position, site)
-        if options.belief == "path":
-            return self._eq1 * plan.length
-        per_metre = self._eq1 if options.per_metre is None else options.per_metre
-        return per_metre * plan.length + options.per_launch
+        if options.belief == "driven":
+            return self._movers.outlook(robot.position, self._facing[robot.id], plan.pieces)
+        if options.belief == "corrected":
+            per_metre = self._eq1 if options.per_metre is None else options.per_metre
+            return per_metre * plan.length + options.per_launch
+        return straight if options.belief == "straight" else self._eq1 * plan.length
 
     def depart(self, robot: Robot, site: Point) -> None:
         """Send the robot to ``site`` [m] now. If there is no path, its trip is over at once.
@@ -166,6 +165,9 @@ class DrivenMotion:
     def advance(self, until: float) -> Sequence[Trip]:
         """Drive on until trips end, at the latest to the last step not after ``until`` [s]."""
         last = self._last_step(until)
+        if self.spec.extra.transmission:
+            for voyage, battery in zip(self._voyages, self._batteries, strict=True):
+                self._movers.hold(voyage.slot, battery.charge)
         while self._voyages and self._step < last and not self._over:
             made, over = self._movers.advance(self._step, last - self._step)
             self._step += made
@@ -174,7 +176,6 @@ class DrivenMotion:
                 self._look_after(over)
         if not self._voyages and not self._over and until < inf:
             self._step = max(self._step, last)
-        self._rested.pay(self._step, self._under_way)
         trips, self._over = self._over, []
         return trips
 
@@ -324,7 +325,6 @@ class DrivenMotion:
             self._over.append(self._trip(voyage, outcome, account))
             self._facing[robot.id] = account.heading
             self._planner.rest(robot.id, robot.position)
-            self._rested.since(robot, self._step)
             self._under_way.discard(robot.id)
             self._stopping.discard(voyage.slot)
         self._movers.leave(list(outcomes))

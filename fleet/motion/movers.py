@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
 from fleet.motion.kernels.direct import direct
+from fleet.motion.kernels.outlook import outlook
 from fleet.motion.kernels.records import MOVER, PIECE, Floor, Traffic
 from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
@@ -60,11 +61,12 @@ class Movers:
         self._floor = floor
         self._engine = engine
         self._wires = disconnected() if engine is None else engine.wires
-        self._embark, self._drive = direct(embark), direct(run)
+        self._embark, self._drive, self._outlook = direct(embark), direct(run), direct(outlook)
         self._free: list[int] = []
         self._slots = np.zeros(0, np.int64)  # in order of departure
         self._count = 0  # of them in use
         self._found = np.zeros(0, np.int64)
+        self._ahead = np.zeros((1, 16), PIECE)
         self._samples = np.zeros((1024 if law[0]["sample"] else 0, len(SAMPLE_FIELDS)))
         self._kept: list[NDArray[np.float64]] = []
         self._more_slots()
@@ -97,6 +99,16 @@ class Movers:
                 return
             self._more_knots(needed)
 
+    def outlook(self, position: Point, heading: float, path: Path) -> float:
+        """What driving along ``path`` from ``position`` [m] and ``heading`` [rad] drains [J]."""
+        if len(path) + 1 > self._ahead.shape[1]:
+            self._ahead = np.zeros((1, 2 * len(path) + 2), PIECE)
+        traffic = self.traffic
+        energy: float = self._outlook(
+            traffic.ghost, self._ahead, traffic.law, path, *position, heading
+        )
+        return energy
+
     def leave(self, places: list[int]) -> None:
         """The trips at these places in the order are over: their slots are free again."""
         for place in sorted(places, reverse=True):
@@ -127,6 +139,16 @@ class Movers:
     def phase(self, slot: int) -> int:
         """Which phase of :mod:`fleet.motion.kernels.records` the trip is in."""
         return int(self.traffic.movers[slot]["phase"])
+
+    def hold(self, slot: int, charge: float) -> None:
+        """The robot's battery holds ``charge`` [J]: it may have paid for other things than driving.
+
+        To the bit what it was, if it has not.
+        """
+        mover = self.traffic.movers[slot]
+        other = float(mover["held"] - mover["spent"]) - charge
+        if other != 0.0:
+            mover["held"] -= other
 
     def account(self, slot: int) -> Account:
         """What has become of one robot since its departure."""

@@ -10,7 +10,7 @@ from fleet.motion.kernels.records import GRIP
 from fleet.robot import RobotSpec
 
 Traffic = Literal["reserved", "free"]
-Belief = Literal["straight", "path", "corrected"]
+Belief = Literal["straight", "path", "corrected", "driven"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,7 +21,8 @@ class DriveOptions:
     touch; or ``free``: it sets off at once, and bodies may touch and push.
 
     A robot bids with what it believes a trip costs: Eq. (1) on the ``straight`` line, Eq. (1)
-    on the planned ``path``, or, ``corrected``, ``per_launch`` and ``per_metre`` of that path.
+    on the planned ``path``, ``corrected``: ``per_launch`` and ``per_metre`` of that path, or what
+    that path will take to be ``driven``, turns and ramps included.
 
     Raises:
         ValueError: a value is out of its range.

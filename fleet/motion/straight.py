@@ -85,6 +85,7 @@ class StraightMotion:
     def advance(self, until: float) -> Sequence[Trip]:
         """Drive on to the next end of a trip, at the latest to the time ``until`` [s]."""
         before = self.now
+        self._legs = [self._as_it_lasts(leg) for leg in self._legs]
         self.now = min(until, min((leg.ends for leg in self._legs), default=until))
         trips, under_way = [], []
         for leg in self._legs:
@@ -125,6 +126,20 @@ class StraightMotion:
                     leg, end=_between(leg, share), ends=self.now, energy=share * leg.energy,
                     outcome="broken down",
                 )  # fmt: skip
+
+    def _as_it_lasts(self, leg: _Leg) -> _Leg:
+        """The leg as the battery lasts, if it has paid for other things on the way, as talk."""
+        other = leg.charge - leg.share(self.now) * leg.energy - leg.robot.battery.charge
+        if other == 0.0:
+            return leg
+        charge = leg.charge - other
+        if leg.energy <= charge:
+            return replace(leg, charge=charge)
+        share = charge / leg.energy
+        return replace(
+            leg, charge=charge, energy=charge, outcome="battery empty", end=_between(leg, share),
+            ends=leg.departed + share * (leg.ends - leg.departed),
+        )  # fmt: skip
 
     def samples(self) -> NDArray[np.float64]:
         """Poses under way since the last call, by time."""

@@ -33,7 +33,7 @@ def occupancy_grid(value: Any, key: str) -> OccupancyGrid:
     if not isinstance(value, str):
         raise bad(key, f"is {value!r}; expected the YAML file of a map")
     path = Path(value)
-    image = _image(path, key)
+    image = image_of(path, key)
     return _grid(path, key, image, _modified(path, key), _modified(image, key))
 
 
@@ -71,7 +71,7 @@ def _problem(error: Exception) -> str:
     return getattr(error, "problem", None) or "it cannot be read"
 
 
-def _image(path: Path, key: str) -> Path:
+def image_of(path: Path, key: str) -> Path:
     """The image's path: as the YAML file says, from where that is."""
     name = read_yaml(path, key)["image"]
     if not isinstance(name, str):

@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeAlias
 
+from fleet.scenario.maps import image_of
 from fleet.study.version import program_version, source_digest
 
 PLAY = "fleet.study.play:play"
@@ -18,7 +19,7 @@ PLAY = "fleet.study.play:play"
 
 Status: TypeAlias = Literal["done", "raised", "killed"]
 
-FILE_NAME = re.compile(r'"([^"]+\.(?:csv|json|npy|png|py|svg|toml|txt))(?::\w+)?"')
+FILE_NAME = re.compile(r'"([^"]+\.(?:csv|json|npy|py|toml|txt|ya?ml))(?::\w+)?"')
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,11 +88,18 @@ canonical = json.JSONEncoder(sort_keys=True, separators=(",", ":")).encode
 
 
 def file_digests(scenario: str) -> Iterator[tuple[str, str]]:
-    """The files of the user's that a scenario, as JSON, names; each with a sha256 of its bytes."""
+    """The files of the user's that a scenario, as JSON, names; each with a sha256 of its bytes.
+
+    A map is two files: the image that a YAML file names counts too.
+    """
     for quoted in FILE_NAME.findall(scenario):
         path = Path(json.loads(f'"{quoted}"'))
-        if path.is_file():
-            yield str(path), _file_digest(path, path.stat().st_mtime_ns)
+        named = [path]
+        if path.suffix in {".yaml", ".yml"}:
+            named.append(image_of(path, "world.file"))
+        for file in named:
+            if file.is_file():
+                yield str(file), _file_digest(file, file.stat().st_mtime_ns)
 
 
 @lru_cache(64)

@@ -300,8 +300,24 @@ def test_transmissions_and_standing_can_cost_energy():
         motion="straight", seed=11, rounds=20, robot={"extra": {"transmission": 0.01}}
     )
     assert talk.energy_drained - free.energy_drained == pytest.approx(0.01 * talk.messages)
-    _, stand, _ = played(motion="straight", seed=11, rounds=5, robot={"extra": {"idle": 0.1}})
-    assert stand.energy_drained > 0.1 * 95 * stand.simulated_time
+
+
+@pytest.mark.parametrize("motion", ["straight", "physics"])
+@pytest.mark.parametrize("radio", [{}, {"name": "lossy", "loss": 0.1}])
+def test_standing_costs_idle_power_to_the_step(motion, radio):
+    """Whoever is not under way pays, and nobody pays twice, neither for talk nor for standing."""
+    simulation, stand, log = played(
+        motion=motion, seed=11, radio=radio or "ideal", time=stream(rate=0.3, duration=120.0),
+        robot={"capacity": 1e4, "extra": {"idle": 0.5, "transmission": 0.01}},
+    )  # fmt: skip
+    trips = [trip for _, trip in log.trips]
+    assert len(trips) > 20
+    assert not simulation.book.open_tasks
+    driving = sum(trip.ended - trip.departed for trip in trips)
+    frames = stand.messages + stand.stream.repeated
+    expected = 0.5 * (100 * 120.0 - driving) + 0.01 * frames + sum(trip.energy for trip in trips)
+    step = 0.5 / 60.0 if motion == "physics" else 0.0  # a robot sets off with a step [J]
+    assert stand.energy_drained == pytest.approx(expected, rel=1e-9, abs=step * len(trips))
 
 
 def test_a_task_ends_once():

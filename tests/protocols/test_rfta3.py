@@ -42,6 +42,18 @@ def test_only_better_bids_are_sent():
     assert talk.award.winner == 7
 
 
+def test_a_poor_bid_is_asked_to_be_bettered_once_by_neighbours_of_neighbours():
+    """Robot 6 is at the event's side but nearly empty; 5, two hops away, is full."""
+    energies = (1, 1, 1, 1, 1, 100, 25, 1)
+    for content, winner, calls in ((1.0, 6, [6]), (0.9, 5, [6, 6, 4, 7])):
+        talk = converse(partial(THRIFT, content=content), ladder(*energies), SITE, 6)
+        assert talk.award.winner == winner
+        said = [t for t, _ in talk.transcript if t.kind == "call"]
+        assert sorted(t.sender for t in said) == sorted(calls)
+        assert all(t.bid is not None and t.bid.robot == 6 for t in said)
+    assert [sender for sender, _ in talk.said("bid")] == [5, 4]
+
+
 def test_the_ring_widens_while_nobody_can_go():
     talk = converse(THRIFT, ladder(100, 1, 1, 1, 1, 1, 1, 1), SITE, 0)
     calls = [t.sender for t, _ in talk.transcript if t.kind == "call"]
@@ -98,3 +110,15 @@ def test_company_makes_dispensable():
     assert metric(beside, site) < metric(apart, site)
     with pytest.raises(ValueError, match="length is 0"):
         CompanyShare(length=0.0)
+
+
+def test_balance_weighs_the_battery_against_the_trip():
+    pair = network([(0.0, 0.0), (3.0, 0.0)], 4.0, energy=[40, 90])
+    site = (1.2, 0.0)  # 1.2 m from the one that holds less, 1.8 m from the other
+    near, full = pair
+    assert CompanyShare(balance=0.0)(near, site) < CompanyShare(balance=0.0)(full, site)
+    assert CompanyShare(balance=1.0)(near, site) > CompanyShare(balance=1.0)(full, site)
+    ratio = CompanyShare(balance=0.5)(near, site) / CompanyShare(balance=0.5)(full, site)
+    assert ratio == pytest.approx(1.2 / 1.8 * (90 / 40) ** 0.5)
+    with pytest.raises(ValueError, match="balance is -1"):
+        CompanyShare(balance=-1.0)

@@ -101,7 +101,7 @@ def pay(mover, energy):
 
 
 @kernel
-def _go_on(mover, pieces, time):
+def go_on(mover, pieces, time):
     """Move ``mover`` along its path for ``time`` [s], and drain it."""
     while time > NEAR:
         piece = pieces[mover.slot, mover.piece]
@@ -155,7 +155,7 @@ def position_at(piece, along):
 @kernel
 def drive(mover, pieces, law, dt):
     """Let ``mover`` go on for ``dt`` [s], and command the mean velocity that takes it there."""
-    _go_on(mover, pieces, dt)
+    go_on(mover, pieces, dt)
     piece = pieces[mover.slot, mover.piece]
     x, y = position_at(piece, mover.along)
     pace = 1.0 / dt

@@ -222,26 +222,6 @@ def test_wheels_pay_for_turning(driving):
     assert bent.energy_ramps > plain.energy_ramps
 
 
-def test_parked_robots_pay_idle_power_however_often_one_looks(driving):
-    spec = RobotSpec(extra=ExtraPower(idle=0.5))
-    points = [(1.0, 1.0), (5.0, 5.0), (8.0, 8.0)]
-    ends = []
-    for slices in (1, 7):
-        motion, robots = driving(points, spec)
-        motion.depart(robots[0], (3.0, 1.0))
-        (trip,) = motion.advance(inf)
-        for k in range(slices):
-            motion.advance(motion.now + (60.0 - motion.now) * (k + 1) / slices)
-        motion.advance(60.0)
-        ends.append([robot.battery.charge for robot in robots])
-        assert robots[1].battery.charge == pytest.approx(100.0 - 0.5 * 60.0)
-        rest = 100.0 - trip.energy - 0.5 * (60.0 - trip.ended)
-        assert robots[0].battery.charge == pytest.approx(rest)
-        motion.advance(1e4)
-        assert robots[2].battery.charge == 0.0
-    assert ends[0] == ends[1]
-
-
 def test_waiting_costs_idle_power_only(driving):
     for idle in (0.0, 2.0):
         spec = RobotSpec(capacity=1e4, extra=ExtraPower(idle=idle))
