@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-all lint bench wheel clean
+.PHONY: demo test test-all lint bench browser clean
 
 demo: $(VENV)/.ready ## one run with the defaults, recorded
 	$(BIN)/fleet run --rrd out/demo.rrd
@@ -12,7 +12,7 @@ demo: $(VENV)/.ready ## one run with the defaults, recorded
 test: $(VENV)/.ready-dev ## the fast tests
 	$(BIN)/python -m pytest -n auto
 
-test-all: $(VENV)/.ready-dev ## all tests, the slow ones too
+test-all: $(VENV)/.ready-dev browser ## all tests, the slow ones too
 	$(BIN)/python -m pytest -n auto -m ""
 
 lint: $(VENV)/.ready-dev ## style, types, import contracts
@@ -23,6 +23,12 @@ lint: $(VENV)/.ready-dev ## style, types, import contracts
 
 bench: $(VENV)/.ready-dev ## the measured figures, as ratios within one run
 	$(BIN)/python benchmarks/run.py
+
+browser: # the web viewer is tested in Debian's chromium; installed here if that is allowed
+	@command -v chromium >/dev/null || \
+	  { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && apt-get update -qq && \
+	    apt-get install -qqy chromium mesa-vulkan-drivers libvulkan1 ffmpeg; } || \
+	  echo "There is no chromium: the tests that need one are skipped. On Debian: apt-get install chromium mesa-vulkan-drivers libvulkan1 ffmpeg"
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
