@@ -113,52 +113,6 @@ def test_many_at_once_nobody_twice():
     check_conservation(simulation, summary)
 
 
-class TestDispatcher:
-    """Assigning together what is open: the centralised baseline of streams."""
-
-    def test_events_are_assigned_together_and_nobody_twice(self):
-        simulation, summary, _ = played(
-            protocol="assignment", motion="straight", seed=2,
-            time=stream(rate=3.0, duration=60.0), robot={"capacity": 1e4},
-        )  # fmt: skip
-        check_conservation(simulation, summary)
-        assert summary.messages == 0
-        assert summary.served > 150
-        assert summary.stream.conflicts == 0
-        waits = [task.taken - task.raised for task in simulation.book.tasks if task.offers == 1]
-        assert min(waits) > 0.0
-        assert max(wait for wait in waits if wait < 1e9) <= 1.0 + 1e-9
-
-    def test_together_costs_less_than_one_after_another(self):
-        """Bursts in one place: the greedy dispatcher takes the nearest from under the rest."""
-
-        def distance(protocol):
-            keys = {"motion": "straight", "robots": 12, "range": 9.0, "robot": {"capacity": 1e6}}
-            drives = [
-                played(
-                    protocol=protocol, seed=seed, **keys, events={"name": "bursts", "size": 6.0,
-                    "spacing": 0.0}, time=stream(rate=0.2, duration=200.0),
-                )[1].distance_per_robot
-                for seed in range(6)
-            ]  # fmt: skip
-            return sum(drives)
-
-        assert distance({"name": "assignment", "interval": 0.5}) < distance("optimum")
-
-    def test_in_rounds_it_is_the_optimum(self):
-        one, other = (
-            played(protocol=protocol, motion="straight", seed=4)[1].as_dict()
-            for protocol in ("assignment", "optimum")
-        )
-        for figures in (one, other):
-            del figures["wall_time"], figures["protocol"]
-        assert one == other
-
-    def test_an_interval_that_cannot_be(self):
-        with pytest.raises(ValueError, match=r"interval is 0\.0 s; expected more than 0"):
-            fleet.run(fleet.Scenario.of(protocol={"name": "assignment", "interval": 0.0}))
-
-
 def test_the_busy_do_not_bid_and_events_wait():
     """Three robots, work that takes long: what comes meanwhile waits, and is served in the end."""
     simulation, summary, _ = played(
