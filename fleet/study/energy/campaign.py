@@ -18,7 +18,7 @@ SHORTEST, LONGEST = 0.05, 7.0  # straight distance of single tasks [m]
 EVER = 1e6  # [J] a battery that energy plays no part in
 
 PROTOCOLS = ("gfgf2a", "rfta2", "rfta2ge", "rfta3")
-BIDS = ("straight", "path", "corrected")  # what robots believe a trip costs
+BIDS = ("straight", "path", "corrected", "driven")  # what robots believe a trip costs
 RATES = (0.5, 1.0, 2.0, 4.0)  # events a second, of streams
 STREAM = 120.0  # [s]
 STANDBY = 3.66  # [W] of robots that stand, in reserved traffic, so that waiting costs: P(0)

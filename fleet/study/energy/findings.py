@@ -21,7 +21,11 @@ OPEN = PLACES[0].name
 WORLDS = ("pit", "rooms", "warehouse")  # with things to drive around
 LONG = 3.5  # [m] of trips that are long
 TOLERABLE = 0.10  # share by which Eq. (1) may be off and still be used
-SOURCES = {"path": "Eq. (1) on the planned path", "corrected": "the corrected model"}
+SOURCES = {
+    "path": "Eq. (1) on the planned path",
+    "corrected": "the corrected model",
+    "driven": "the whole drive, foreseen,",
+}
 CLOSED = 1e-3  # share of its energy that a trip's parts may leave unexplained
 
 
@@ -121,14 +125,14 @@ def on_bids(listed: Sequence[Life]) -> str:
         changes.append(_gain(other))
     if not said:
         return ""
+    tried = [bids for bids in SOURCES if any(life.bids == bids for life in listed)]
     return (
         "Some robots set out and do not arrive, their battery being empty. If they bid by Eq. (1),"
         f" and if by the corrected model, on the open floor: {'; '.join(said)}. The lifetime, up"
         f" to the first event that nobody takes, changes by {min(changes):+.0f} % to"
         f" {max(changes):+.0f} %. It is no measure of this: if a robot dies on its way another one"
         " is sent, and the event counts as served, so whoever takes a chance lives longer by it."
-        f" Over all places and protocols {_changed(listed, 'path')}, and"
-        f" {_changed(listed, 'corrected')}."
+        f" Over all places and protocols {'; '.join(_changed(listed, bids) for bids in tried)}."
     ).replace("-", "−")
 
 

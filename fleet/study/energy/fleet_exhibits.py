@@ -17,13 +17,15 @@ from fleet.study.energy.trips import PARTS, Trips
 from fleet.study.report.style import INK, MARKERS, SERIES, WIDTH
 from fleet.study.statistics import Interval, mean_interval
 
-WAYS = {"as in the paper": 6, "straight": 1, "path": 2, "corrected": 0}
+WAYS = {"as in the paper": 6, "straight": 1, "path": 2, "corrected": 0, "driven": 3}
 """Ways to bid, with their shades; the first is not only bid but driven in straight lines."""
+BETTER = ("path", "corrected", "driven")
 SAID = {
     "as in the paper": "bid and driven by Eq. (1), as in the paper",
     "straight": "bids: Eq. (1), straight",
     "path": "bids: Eq. (1), planned path",
     "corrected": "bids: planned path + launch",
+    "driven": "bids: the whole drive, foreseen",
 }
 
 
@@ -187,14 +189,14 @@ def _dots(axes: Any, lives: Sequence[Life | None], measure: str, number: int, wa
     for at, life in enumerate(lives):
         if life is not None:
             value, low, high = life.means[measure]
-            x = at + 0.17 * (number - 1.5)
+            x = at + 0.15 * (number - 2.0)
             axes.vlines(x, low, high, color=SERIES[WAYS[way]], lw=1.2)
             axes.plot(x, value, MARKERS[number], color=SERIES[WAYS[way]], ms=3.6)
 
 
 def differences(listed: Sequence[Life]) -> Exhibit:
     """What other bids change, over runs of the same seed."""
-    others = [life for life in listed if life.bids in ("path", "corrected")]
+    others = [life for life in listed if life.bids in BETTER]
     rows = []
     for life in others:
         base = find(listed, life.place, life.protocol, BASELINE)
@@ -239,14 +241,16 @@ def _contrasts(listed: Sequence[Life]) -> Figure:
     figure = Figure(figsize=(WIDTH, 0.6 + 0.2 * len(names)))
     panels = figure.subplots(1, 3, sharey=True)
     for axes, (measure, title) in zip(panels, measures.items(), strict=True):
-        for number, way in ((2, "path"), (3, "corrected")):
+        for number, way in enumerate(BETTER):
             mine = [life for life in listed if life.bids == way]
             if not mine:
                 continue
-            y = [places[life.place, life.protocol] + 0.15 * (5 - 2 * number) for life in mine]
+            y = [places[life.place, life.protocol] + 0.24 * (1 - number) for life in mine]
             value, low, high = np.array([_difference(life, measure) for life in mine]).T
             axes.hlines(y, low, high, color=SERIES[WAYS[way]], lw=1.2)
-            axes.plot(value, y, MARKERS[number], color=SERIES[WAYS[way]], ms=3.4, label=SAID[way])
+            axes.plot(
+                value, y, MARKERS[number + 2], color=SERIES[WAYS[way]], ms=3.4, label=SAID[way]
+            )
         axes.axvline(0.0, color=INK, lw=0.8, zorder=1.5)
         axes.set_title(title)
         axes.grid(visible=False, axis="y")
