@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion import Trip
-from protocols.messages import Award, Event, Heard, RobotId, Transmission
+from protocols.messages import Award, Event, Heard, Move, RobotId, Transmission
 
 if TYPE_CHECKING:
     from fleet.results import Summary
@@ -60,6 +60,12 @@ class Observer:
 
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """A robot sets off to an event."""
+
+    def relocating(self, event: Event, move: Move, time: float) -> None:
+        """A robot sets off to a place that is no event: an award of this event has sent it."""
+
+    def relocated(self, event: Event, trip: Trip) -> None:
+        """It came to rest: there, or short of it."""
 
     def moved(self, samples: NDArray[np.float64]) -> None:
         """Poses (k, 6) of the robots under way: :data:`fleet.motion.SAMPLE_FIELDS`."""

@@ -86,7 +86,7 @@ class Simulation:
                 protocol, self._crew.view, radio, self._agenda, self.tally, self._concluded
             )
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
-        self._relocating: dict[int, Task | None] = {}  # by robot: what it carries on the way
+        self._relocating: dict[int, tuple[Task, bool]] = {}  # by robot: why, and if it carries it
         self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
         self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
         self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
@@ -299,15 +299,17 @@ class Simulation:
         self.tally.relocations += 1
         robot.engaged = True
         self._since[robot.id] = self.now
-        self._relocating[robot.id] = task if winner is None else None
+        self._relocating[robot.id] = task, winner is None
+        self._tell(lambda o: o.relocating(task.event, move, self.now))
         self._motion.depart(robot, move.position)
         return True
 
     def _relocated(self, robot: Robot, trip: Trip) -> None:
         """A relocation has ended: what the robot carried is told to it anew."""
-        task = self._relocating.pop(robot.id)
+        task, carries = self._relocating.pop(robot.id)
+        self._tell(lambda o: o.relocated(task.event, trip))
         self._release(robot)
-        if task is None or task.state is not State.WAITING:
+        if not carries or task.state is not State.WAITING:
             return
         if trip.outcome == "arrived" and robot.on_air:
             self._offer(task, robot.id)

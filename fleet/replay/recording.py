@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS, Trip
 from fleet.observer import Observer, Sent
-from fleet.replay.errands import Errands
-from fleet.replay.journal import Entry, Scene, TripEnd, send
-from protocols.messages import Award, Event, RobotId
+from fleet.replay.journal import RELOCATED, Entry, Scene, TripEnd, send
+from protocols.messages import Award, Event, Move, RobotId
 
 if TYPE_CHECKING:
     from fleet.energy import Battery
@@ -86,7 +85,6 @@ class RerunRecorder(Observer):
         self._sent: list[Sent] = []
         self._samples: list[NDArray[np.float64]] = []
         self._sampled = 0
-        self._errands = Errands(())
         self._told = 0  # transmissions of the run so far, up to the last flush
         self._latest = -1  # id of the latest event
         self._rounds = 0  # events since the last flush
@@ -106,7 +104,6 @@ class RerunRecorder(Observer):
         """Tell the writer what the world looks like."""
         self._all_drain = bool(fleet.spec.extra.idle or fleet.spec.extra.transmission)
         self._batteries = [robot.battery for robot in fleet.robots]
-        self._errands = Errands(fleet.robots)
         hole, labels, spec = fleet.arena.hole, fleet.labels, fleet.spec
         scene = Scene(
             width=fleet.arena.width,
@@ -139,8 +136,6 @@ class RerunRecorder(Observer):
             if self._rounds == self._flush_rounds or self._due():
                 self.flush()
             self._rounds += 1
-        if self._errands:
-            self._look_after_errands(time)
         self._note("raised", time, event.id, event.position, source)
 
     def sent(self, sent: Sent) -> None:
@@ -152,7 +147,6 @@ class RerunRecorder(Observer):
         bids = [(cost, robot) for cost, robot in award.bids]
         moves = [(move.robot, move.position) for move in award.moves]
         self._note("awarded", time, event.id, award.winner, award.auctioneer, bids, moves)
-        self._errands.order(event.id, award.moves, time)
         if len(self._sent) > MANY_SENT:
             self.flush()
 
@@ -166,16 +160,20 @@ class RerunRecorder(Observer):
 
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """Note it."""
-        if self._errands:
-            self._look_after_errands(time, robot)
         self._note("departed", time, event.id, robot, event.position, False)
+
+    def relocating(self, event: Event, move: Move, time: float) -> None:
+        """Note it."""
+        self._note("departed", time, event.id, move.robot, move.position, True)
+
+    def relocated(self, event: Event, trip: Trip) -> None:
+        """Note the trip, and what batteries hold now."""
+        end = TripEnd(*FLAT_TRIP(trip))._replace(outcome=RELOCATED)
+        self._note("ended", event.id, tuple(end), self._charges(trip.robot))
 
     def moved(self, samples: NDArray[np.float64]) -> None:
         """Note the poses; they are the observer's own."""
         if len(samples):
-            if self._errands:
-                self._look_after_errands(float(samples[0, 1]))
-                self._errands.follow(samples)
             self._samples.append(samples)
             self._note("moved", len(samples))
             self._sampled += len(samples)
@@ -184,8 +182,6 @@ class RerunRecorder(Observer):
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        if self._errands:
-            self._look_after_errands(trip.ended)
         self._note("ended", event.id, FLAT_TRIP(trip), self._charges(trip.robot))
 
     def run_ended(self, summary: Summary) -> None:
@@ -237,13 +233,6 @@ class RerunRecorder(Observer):
         """What batteries hold: that of a robot that has driven, or all if all are drained."""
         drained = self._batteries if self._all_drain else [self._batteries[robot]]
         return array("d", [battery.charge for battery in drained]).tobytes()
-
-    def _look_after_errands(self, time: float, called: RobotId | None = None) -> None:
-        """Note who has set off on an errand, and who is back from one."""
-        for errand in self._errands.set_off(called):
-            self._note("departed", errand.departed, errand.event, errand.robot, errand.place, True)
-        for event, trip in self._errands.over(time, called):
-            self._note("ended", event, tuple(trip), self._charges(trip.robot))
 
     def _due(self) -> bool:
         """Whether a live viewer waits for news."""

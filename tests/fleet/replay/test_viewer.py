@@ -17,6 +17,8 @@ from fleet.replay.recording import RerunRecorder
 
 from .conftest import simulation
 
+pytestmark = pytest.mark.slow  # a viewer that draws in software takes its time
+
 REPLAY = {"World", "Event", "Decisions", "Auction"}
 LIFETIME = {
     "Energy of each robot, round by round", "Where robots went", "Robots by energy left [J]",
