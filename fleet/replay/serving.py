@@ -9,56 +9,75 @@ from __future__ import annotations
 import io
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from threading import Thread
-from typing import IO, Any
-from urllib.error import HTTPError
+from typing import IO, Any, NamedTuple
+from urllib.parse import quote, urlsplit
 from urllib.request import urlopen
 
 LOOPBACK = "127.0.0.1"
+PARTS = ("/", "/re_viewer.js", "/re_viewer_bg.wasm", "/sw.js", "/favicon.ico")
+RECORDING = "/recording.rrd"
 ELSEWHERE = re.compile(rb"<link[^>]*https://[^>]*>")  # servers that a browser greets beforehand
+POLICY = (
+    "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' data: blob:"
+)
+
+
+class Part(NamedTuple):
+    """A file of the web viewer."""
+
+    kind: str  # its media type
+    content: bytes
+
+
+def parts_of(port: int) -> dict[str, Part]:
+    """The web viewer by path, as the program that listens at ``port`` serves it."""
+    found = {}
+    for path in PARTS:
+        with urlopen(f"http://{LOOPBACK}:{port}{path}") as answer:
+            content = answer.read()
+            found[path] = Part(answer.headers["Content-Type"], ELSEWHERE.sub(b"", content))
+    return found
 
 
 @contextmanager
-def confined(page: int, data: int) -> Iterator[int]:
-    """The port of a server that hands on what port ``page`` serves; ``data`` may be reached too."""
-    policy = (
-        "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:;"
-        f" connect-src 'self' data: blob: http://{LOOPBACK}:{data}"
-    )
+def serving(parts: Mapping[str, Part], recording: Path) -> Iterator[str]:
+    """The address of a page that shows ``recording``; it is served, on loopback, until the end."""
 
-    class Relay(BaseHTTPRequestHandler):
+    class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            try:
-                answer = urlopen(f"http://{LOOPBACK}:{page}{self.path}")
-            except HTTPError as error:
-                self.send_error(error.code)
-                return
-            with answer:
-                kind = answer.headers["Content-Type"]
-                content: IO[bytes] = answer
-                size = answer.headers["Content-Length"]
-                if kind == "text/html":
-                    text = ELSEWHERE.sub(b"", answer.read())
-                    content, size = io.BytesIO(text), str(len(text))
-                self.send_response(HTTPStatus.OK)
-                self.send_header("Content-Type", kind)
-                self.send_header("Content-Length", size)
-                self.send_header("rerun-final-length", size)  # for its progress bar
-                self.send_header("Content-Security-Policy", policy)
-                self.end_headers()
-                shutil.copyfileobj(content, self.wfile)
+            path = urlsplit(self.path).path
+            if path == RECORDING:
+                with recording.open("rb") as file:
+                    self._send("application/octet-stream", file, recording.stat().st_size)
+            elif path in parts:
+                part = parts[path]
+                self._send(part.kind, io.BytesIO(part.content), len(part.content))
+            else:
+                self.send_error(HTTPStatus.NOT_FOUND)
+
+        def _send(self, kind: str, content: IO[bytes], size: int) -> None:
+            self.send_response(HTTPStatus.OK)
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(size))
+            self.send_header("rerun-final-length", str(size))  # for its progress bar
+            self.send_header("Content-Security-Policy", POLICY)
+            self.end_headers()
+            shutil.copyfileobj(content, self.wfile)
 
         def log_message(self, *_: Any) -> None:
             """Nobody needs to read who got which file."""
 
-    with ThreadingHTTPServer((LOOPBACK, 0), Relay) as server:
+    with ThreadingHTTPServer((LOOPBACK, 0), Handler) as server:
         server.daemon_threads = True
         Thread(target=server.serve_forever, daemon=True).start()
+        here = f"http://{LOOPBACK}:{server.server_address[1]}"
         try:
-            yield server.server_address[1]
+            yield f"{here}/?renderer=webgl&url={quote(here + RECORDING, safe='')}"
         finally:
             server.shutdown()

@@ -15,9 +15,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from urllib.parse import quote
 
-from fleet.replay.serving import LOOPBACK, confined
+from fleet.replay.serving import LOOPBACK, Part, parts_of, serving
 
 PATIENCE = 30.0  # [s] for a viewer to start
 
@@ -60,25 +59,30 @@ def serve(recording: Path) -> Iterator[str]:
     Raises:
         ValueError: the server does not start.
     """
+    with serving(_web_viewer(), recording) as address:
+        yield address
+
+
+def _web_viewer() -> dict[str, Part]:
+    """The web viewer, as its program serves it. That is ended again: it is never idle."""
     page, data = free_port(), free_port()
     with tempfile.TemporaryFile() as said:
         server = subprocess.Popen(  # noqa: S603 - the program inside the wheel
             [
                 str(viewer_binary()), "--serve-web", "--bind", LOOPBACK,
-                "--web-viewer-port", str(page), "--port", str(data), str(recording),
+                "--web-viewer-port", str(page), "--port", str(data),
             ],
             env=viewer_environment(),
+            stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=said,
         )  # fmt: skip
         try:
-            if not (_answers(page, server) and _answers(data, server)):
+            if not _answers(page, server):
                 said.seek(0)
                 reason = said.read().decode(errors="replace").strip()
                 raise ValueError(f"the web viewer did not start: {reason[-300:]}")
-            source = quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
-            with confined(page, data) as port:
-                yield f"http://{LOOPBACK}:{port}/?renderer=webgl&url={source}"
+            return parts_of(page)
         finally:
             server.terminate()
             server.wait()
