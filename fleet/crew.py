@@ -70,7 +70,7 @@ class Crew:
         for robot in moved if self._seen else ():
             self._seen[robot.id].position = robot.position
         if self._blackouts:
-            self._listen_anew(now)
+            self._listen_anew()
         for id in arrived:
             self._paid[id] = now
         self.stand(now)
@@ -112,19 +112,19 @@ class Crew:
     def black_out(self, blackout: Blackout, now: float) -> None:
         """The radio of a region falls silent."""
         self._blackouts.append(blackout)
-        self._listen_anew(now)
+        self._listen_anew()
 
     def lift(self, blackout: Blackout, now: float) -> None:
         """The radio of a region is back."""
         self._blackouts.remove(blackout)
-        self._listen_anew(now)
+        self._listen_anew()
 
     def nobody_nearer(self, site: Point, squared: float) -> bool:
         """Whether no living robot is nearer to ``site`` [m] than the root of ``squared``."""
         dx, dy = self._x - site[0], self._y - site[1]
         return not (dx * dx + dy * dy < squared).any()
 
-    def _listen_anew(self, now: float) -> None:
+    def _listen_anew(self) -> None:
         """Who is in a silent region, now that robots or regions have changed."""
         for robot in self._fleet.robots:
             silenced = any(blackout.covers(robot.position) for blackout in self._blackouts)

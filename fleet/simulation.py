@@ -77,14 +77,16 @@ class Simulation:
         self._agenda = Agenda()
         many_drive = isinstance(course.timing, Stream)
         self._crew = Crew(fleet, radio, motion, self._observers, many_drive=many_drive)
-        self._talks: Conversations | Dispatch = Conversations(
-            protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
-            self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
-        )  # fmt: skip
+        self._talks: Conversations | Dispatch
         if many_drive and isinstance(protocol, Dispatcher):
             self._talks = Dispatch(
                 protocol, self._crew.view, radio, self._agenda, self.tally, self._concluded
             )
+        else:
+            self._talks = Conversations(
+                protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
+                self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
+            )  # fmt: skip
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
         self._relocating: dict[int, tuple[Task, bool]] = {}  # by robot: why, and if it carries it
         self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
@@ -209,6 +211,9 @@ class Simulation:
         """Tell a robot of the task, the handler's choice or ``source``, and let it talk."""
         if task.state not in (State.REPORTED, State.WAITING):
             return
+        if self.now - task.raised > task.deadline:
+            self._close(task, State.EXPIRED)  # it was taken when the deadline passed
+            return
         if isinstance(self._course.timing, Rounds):
             if self._in_hand not in (None, task):
                 self._in_line.append(task)
@@ -232,14 +237,14 @@ class Simulation:
 
     def _concluded(self, task: Task, award: Award) -> None:
         """A conversation has ended: somebody goes, or nobody can."""
+        if task.state is not State.REPORTED:
+            return  # it expired while it was talked over
         robots, site = self.fleet.robots, task.event.position
         found = squared_distance(robots[award.auctioneer].position, site)
         if award.winner is not None:
             found = min(found, squared_distance(robots[award.winner].position, site))
         self.tally.closest += self._crew.nobody_nearer(site, found)
         self._tell(lambda o: o.awarded(task.event, award, self.now))
-        if task.state is not State.REPORTED:
-            return  # it expired while it was talked over
         winner = None if award.winner is None else robots[award.winner]
         set_off = [self._relocate(move, winner, task) for move in award.moves]
         if winner is None and any(set_off):
@@ -254,8 +259,8 @@ class Simulation:
 
     def _broken_off(self, task: Task, why: str) -> None:
         """A conversation came to no end. The handler hears nothing, and asks again."""
-        self._tell(lambda o: o.broken_off(task.event, why, self.now))
         if task.state is State.REPORTED:
+            self._tell(lambda o: o.broken_off(task.event, why, self.now))
             self._put_off(task, why, silent=True)
 
     def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
@@ -369,10 +374,8 @@ class Simulation:
             self._agenda.at(self.now + timing.patience, partial(self._offer, task))
 
     def _offer_again(self, task: Task) -> None:
-        """At once, unless its deadline has passed."""
-        if self.now - task.raised > task.deadline:
-            self._close(task, State.EXPIRED)
-        elif self._crew.on_air:
+        """At once, if there is anybody to offer it to."""
+        if self._crew.on_air:
             task.offers = 0 if isinstance(self._course.timing, Rounds) else task.offers
             self._offer(task)
         else:

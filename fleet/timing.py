@@ -57,8 +57,10 @@ class Stream:
         for name in ("service", "patience"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise ValueError(f"time {name} is {getattr(self, name)}; expected 0 or more")
-        if not self.rate < inf:
-            raise ValueError(f"time rate is {self.rate}; expected a finite rate")
+        if not self.rate <= 1e6:
+            raise ValueError(f"time rate is {self.rate}; expected at most a million a second")
+        if not self.duration <= 1e9:
+            raise ValueError(f"time duration is {self.duration} s; expected at most 1e9")
         if self.offers < 1:
             raise ValueError(f"time offers is {self.offers}; expected 1 or more")
 

@@ -47,7 +47,7 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
     "k-saap": ProtocolEntry(flooding.k_saap, MEZEI),
     "k-sap": ProtocolEntry(flooding.k_sap, MEZEI),
     "mia-ta": ProtocolEntry(mia_ta, f"in {PAPER}, Table 1, our reading"),
-    "optimum": ProtocolEntry(central.optimum, "an upper bound: all robots are known", False),
+    "optimum": ProtocolEntry(central.optimum, "a yardstick: all robots are known", False),
     "rfta1": ProtocolEntry(rfta.rfta1, f"{PAPER}, section 4.1"),
     "rfta2": ProtocolEntry(rfta.rfta2, f"{PAPER}, section 4.2"),
     "rfta2-iterated": ProtocolEntry(

@@ -13,6 +13,7 @@ def print_summary(summary: Summary) -> None:
     """Print the summary to standard output, units beside the figures."""
     s = summary
     kinds = ", ".join(f"{count} {kind}" for kind, count in s.messages_by_kind.items() if count)
+    kinds = f": {kinds}" if kinds else ""
     initial = s.energy_initial
     drained_to_predicted = (
         f" = {s.energy_drained / s.energy_predicted:.3f} × Eq. (1)" if s.energy_predicted else ""
@@ -20,7 +21,7 @@ def print_summary(summary: Summary) -> None:
     rows = [
         ("lifetime", _lifetime(s)),
         ("events", f"{s.events} raised, {s.served} served, {s.failed} trips failed"),
-        ("messages", f"{s.messages} ({s.messages / max(s.events, 1):.1f} an event: {kinds})"),
+        ("messages", f"{s.messages} ({s.messages / max(s.events, 1):.1f} an event{kinds})"),
         ("messages per robot", f"{s.messages_per_robot:.2f}"),
         ("hops", f"{s.hops_greedy} greedy, {s.hops_face} face"),
         ("energy predicted", f"{s.energy_predicted:.1f} J by Eq. (1) on straight lines"),
@@ -84,7 +85,7 @@ def _stream_rows(stream: StreamFigures) -> list[tuple[str, str]]:
         ("winners already taken", f"{stream.conflicts}"),
         ("searches begun anew", f"{stream.restarts}"),
         ("frames", f"{stream.repeated} repeated, {stream.unheard} heard by nobody"),
-        ("beacons, of sensors", f"{stream.beacons}, {stream.sensor_messages}"),
+        ("beacons, sensor messages", f"{stream.beacons}, {stream.sensor_messages}"),
         ("breakdowns, relocations", f"{stream.breakdowns}, {stream.relocations}"),
     ]
 

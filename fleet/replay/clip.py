@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from fleet.replay.readback import Recording
 
 ENDINGS = {"gif", "webp", "mp4"}
-COLOURS = 96  # of a GIF
+VIVID = 60  # of 255 between the channels of a colour that is not grey
+KEPT = 128  # vivid colours
+COLOURS = 224  # of a GIF
 MOST_FRAMES = 3000
 LINGER = 1.0  # [s] that the last picture stays
 NANO = 1e9
@@ -154,8 +156,31 @@ def _animate(drawn: list[Image], out: Path, frames_per_second: float) -> None:
     frame = round(1000.0 / frames_per_second)
     durations = [frame] * (len(drawn) - 1) + [frame + round(1000.0 * LINGER)]
     if out.suffix.lower() == ".gif":
-        drawn = [image.quantize(COLOURS, dither=Image.Dither.NONE) for image in drawn]
+        palette = _palette(drawn)
+        drawn = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in drawn]
     drawn[0].save(out, save_all=True, append_images=drawn[1:], duration=durations, loop=0)
+
+
+def _palette(drawn: list[Image]) -> Image:
+    """An image with the colours that all frames share.
+
+    A colour says what an arrow is, and arrows are thin: the vivid colours that cover most are
+    kept as they are, before the rest shares what is left.
+    """
+    from PIL import Image
+
+    digits = np.array([1 << 16, 1 << 8, 1], np.uint32)
+    packed, counts = np.unique(
+        np.concatenate([(np.asarray(image, np.uint32) @ digits).ravel() for image in drawn]),
+        return_counts=True,
+    )
+    colours = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=-1).astype(np.uint8)
+    spread = np.ptp(colours.astype(int), axis=1)
+    vivid = colours[np.argsort(np.where(spread > VIVID, -counts, 0), kind="stable")[:KEPT]]
+    rest = Image.fromarray(colours[None]).quantize(COLOURS - KEPT, dither=Image.Dither.NONE)
+    shared = Image.new("P", (1, 1))
+    shared.putpalette([*vivid.ravel().tolist(), *(rest.getpalette() or ())][: 3 * COLOURS])
+    return shared
 
 
 def _film(ffmpeg: str, drawn: list[Image], out: Path, frames_per_second: float) -> None:

@@ -64,7 +64,7 @@ class Scenario:
                 upto = "or more" if high == inf else f"to {high}"
                 raise ValueError(f"{name} is {value}; expected {low} {upto}")
         if not 0.0 < self.range < inf:
-            raise ValueError(f"range is {self.range} m; expected more than 0")
+            raise ValueError(f"range is {self.range} m; expected more than 0, and finite")
 
     @classmethod
     def of(cls, **keys: Any) -> Scenario:

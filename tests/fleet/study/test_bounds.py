@@ -44,3 +44,10 @@ def test_no_protocol_outlives_foresight(protocol, world):
     most = bounds(scenario)
     assert 0 < fleet.run(scenario).lifetime <= most.foresight
     assert most.nearest < most.foresight  # foresight may leave the nearest robot where it is
+
+
+def test_a_bound_beyond_the_events_first_looked_at_is_found(monkeypatch):
+    scenario = fleet.Scenario.of(robots=20, range=9.0, robot={"capacity": 60.0}, seed=1)
+    expected = bounds(scenario).foresight
+    monkeypatch.setattr("fleet.study.bounds.SITES", 20)
+    assert bounds(scenario).foresight == expected > 40

@@ -127,7 +127,7 @@ def test_shares_of_ceiling_and_bounds():
     found = {reach.protocol: reach for reach in reaches(Results.of(rows), Bounds(1000.0, 1200))}
     best = found["rfta3"]
     assert (best.short, best.longer, best.within, best.messages) == (600, 600, 0, 8)
-    assert (best.ceiling, best.nearest, best.foresight) == (0.75, 0.6, 0.5)
+    assert (best.all_knowing, best.nearest, best.foresight) == (0.75, 0.6, 0.5)
 
 
 def test_the_campaign_is_the_papers():
