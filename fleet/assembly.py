@@ -116,6 +116,9 @@ def make_course(
 ) -> Course:
     """What will befall the fleet."""
     timing = make_timing(scenario.time)
+    for fault in scenario.faults.planned:
+        if fault.robot >= robots:
+            raise bad("faults.planned", f"robot is {fault.robot}; expected 0 to {robots - 1}")
     rate = timing.rate if isinstance(timing, Stream) else inf
     try:
         occurrences = bind_events(scenario.events)(

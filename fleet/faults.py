@@ -92,8 +92,7 @@ class Faults:
     def breakdowns(self, robots: int, rng: np.random.Generator) -> Iterator[Breakdown]:
         """The breakdowns of a run, in no order; each robot has at most one of each kind."""
         for fault in self.planned:
-            if fault.robot < robots:
-                yield Breakdown(fault.time, fault.robot, fault.what)
+            yield Breakdown(fault.time, fault.robot, fault.what)
         draws = rng.exponential(1.0, (2, robots)).tolist()
         kinds: tuple[Literal["motor", "all"], ...] = ("motor", "all")
         for what, rate, row in zip(kinds, (self.motor_rate, self.robot_rate), draws, strict=True):

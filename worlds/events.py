@@ -107,6 +107,9 @@ def trace(
         raise ValueError(
             f"a trace of {occurrences.shape[1]} columns; expected time, x, y, service, deadline"
         )
+    past = np.flatnonzero(occurrences[:, 0] < 0.0)
+    if len(past):
+        raise ValueError(f"an event happens at {occurrences[past[0], 0]} s; expected 0 or more")
     size = np.array([arena.width, arena.height])
     outside = ((occurrences[:, 1:3] < 0.0) | (occurrences[:, 1:3] > size)).any(axis=1)
     if outside.any():

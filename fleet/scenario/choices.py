@@ -15,6 +15,7 @@ from fleet.scenario.binding import bind, build, keywords
 from fleet.scenario.errors import bad, unknown
 from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
+from fleet.scenario.rehearsal import rehearse
 from fleet.timing import TIMINGS, Rounds, Stream
 from protocols.catalogue import PROTOCOLS
 from protocols.messages import ProtocolFunction
@@ -61,6 +62,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     made: ProtocolFunction = (build if isclass(function) else bind)(
         function, parameters, "protocol"
     )
+    rehearse(made, name)
     return made
 
 

@@ -11,6 +11,9 @@ import numpy as np
 from fleet.scenario.errors import bad
 from worlds.shapes import FloatArray
 
+COLUMNS = (("x", "y"), ("time", "x", "y", "service", "deadline"))
+"""What the columns of the user's tables may be called: places, and traces of events."""
+
 
 def numbers(value: Any, key: str) -> FloatArray:
     """A table (n, columns) from the path of a CSV file, or from a list of rows.
@@ -32,7 +35,7 @@ def numbers(value: Any, key: str) -> FloatArray:
 
 
 def read_numbers(path: Path, key: str) -> FloatArray:
-    """The numbers of a CSV file (n, columns); a first line of names is skipped.
+    """The numbers of a CSV file (n, columns); a first line may name the columns, in their order.
 
     Raises:
         BadInput: the file is not there, or a line of it holds something else.
@@ -44,7 +47,7 @@ def read_numbers(path: Path, key: str) -> FloatArray:
         reason = getattr(error, "strerror", None) or "it is not text"
         raise bad(key, f"{str(path)!r} cannot be read: {reason}") from error
     if rows and not any(map(_is_number, rows[0])):
-        del rows[0]
+        _check_names([name.strip().lower() for name in rows.pop(0)], path, key)
     found = []
     for number, row in enumerate(rows, 1):
         cells = [cell.strip() for cell in row]
@@ -57,6 +60,14 @@ def read_numbers(path: Path, key: str) -> FloatArray:
         raise bad(key, f"{path} holds no rows; expected lines of numbers")
     width = max(map(len, found))
     return np.array([row + [np.nan] * (width - len(row)) for row in found])
+
+
+def _check_names(names: list[str], path: Path, key: str) -> None:
+    for known in COLUMNS:
+        if names == list(known[: len(names)]):
+            return
+    expected = " or ".join(",".join(known) for known in COLUMNS)
+    raise bad(key, f"{path}: the columns are {','.join(names)}; expected {expected}, or no names")
 
 
 def _is_number(cell: str) -> bool:

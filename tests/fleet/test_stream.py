@@ -141,6 +141,27 @@ def test_events_expire_at_their_deadline():
     check_conservation(simulation, summary)
 
 
+@pytest.mark.parametrize("what", ["motor", "all"])
+def test_a_deadline_holds_whatever_became_of_the_robot(what):
+    """The robot that set off breaks down, and is only missed after the deadline."""
+    keys = {"motion": "straight", "seed": 4, "rounds": 1, "time": stream(deadline=1.5, rate=0.2)}
+    _, _, log = played(**keys)
+    ((_, trip),) = log.trips
+    assert trip.ended - trip.departed > 0.5
+    fault = {"time": trip.departed + 0.4, "robot": trip.robot, "what": what}
+    simulation, summary, _ = played(**keys, faults={"planned": [fault]})
+    task = simulation.book.tasks[0]
+    assert task.state in (State.EXPIRED, State.SERVED)
+    assert task.state is State.EXPIRED or task.taken <= task.raised + 1.5
+    assert what == "motor" or summary.stream.expired == 1  # silent: missed after 5 s
+
+
+def test_a_breakdown_of_a_robot_that_is_not_there_is_refused():
+    planned = [{"time": 1.0, "robot": 100}]
+    with pytest.raises(ValueError, match=r"faults.planned: robot is 100; expected 0 to 99"):
+        played(faults={"planned": planned})
+
+
 def test_the_life_of_a_stream_ends_with_what_is_never_served():
     _, summary, _ = played(
         motion="straight", robots=10, range=6.0, seed=7,

@@ -330,3 +330,13 @@ class TestStream:
             assert len(sizes) == len(sites)
             several += len(sites) > 1
         assert several
+
+
+@pytest.mark.parametrize("protocol", ["rfta3", "assignment"])
+def test_events_that_expire_while_they_are_talked_over(protocol, tmp_path):
+    time = {"name": "stream", "rate": 1.0, "duration": 40.0, "deadline": 0.1}
+    settings = {"protocol": protocol, "time": time, "radio": {"name": "lossy", "loss": 0.2}}
+    watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={}, strict=True)
+    summary = simulation([watching], robots=60, **settings).run()
+    assert summary.stream.expired > 0
+    assert Recording(tmp_path / "run.rrd").properties["summary"]["events"] == summary.events

@@ -200,3 +200,16 @@ def test_a_user_file_that_raises_is_named_with_its_line(tmp_path):
     assert "does not import in line 2: ValueError" in refusal(None, {"protocol": f"{path}:x"})
     path.write_text("def x(:\n")
     assert "does not import in line 1: SyntaxError" in refusal(None, {"protocol": f"{path}:x"})
+
+
+def test_columns_in_another_order_are_refused_and_not_mixed_up(tmp_path):
+    path = tmp_path / "events.csv"
+    events = {"name": "trace", "occurrences": str(path)}
+    path.write_text("time,y,x\n1.0,2.0,3.0\n")
+    with pytest.raises(BadInput, match=r"the columns are time,y,x; expected x,y or time,x,y"):
+        fleet.run(fleet.Scenario.of(events=events, motion="straight"))
+    path.write_text("Time, x, y\n1.0,2.0,3.0\n")
+    assert fleet.run(fleet.Scenario.of(events=events, motion="straight")).events == 1
+    path.write_text("-1.0,2.0,3.0\n")
+    with pytest.raises(BadInput, match=r"an event happens at -1.0 s; expected 0 or more"):
+        fleet.run(fleet.Scenario.of(events=events, motion="straight"))
