@@ -1,18 +1,19 @@
-"""RFTA3: thrifty auctions that spare the network, and widen only when nobody can go.
+"""RFTA3: thrifty auctions that ask further only when it pays, and carry events out of splinters.
 
 RFTA2 and RFTA2GE send whoever would have most energy left, however far away; the robot that
 was found, usually the nearest, may not even bid; and life ends with the first neighbourhood
-that is spent. RFTA3 keeps their search and their auction and changes four things:
+that is spent. RFTA3 keeps their search and their auction and changes three things:
 
 1. A bid is what the trip costs over the root of what the battery holds, less for robots that
    leave company close by: thrift before balance.
 2. The call carries the caller's own bid, and only better ones are sent: the auctioneer
    competes, and most of the silence is agreement.
-3. A robot whose departure would cut its neighbours off from one another stays, as long as
-   anybody else can go.
-4. If the best bid is a poor one, the call goes out once more, a hop further, for better ones.
+3. If the best bid is a poor one, the call goes out once more, a hop further, for better ones.
    While nobody can go, it reaches twice as far, up to the whole component. If the component is
    but a splinter of the network, one of its robots carries the event on towards it.
+
+On request a robot whose departure would cut its neighbours off from one another stays for as
+long as anybody else can go; with splinters carrying events on, that costs more than it gains.
 
 So an event is served whenever any robot of the component can serve it.
 """
@@ -62,10 +63,10 @@ def rfta3(
     search: Search = TWO_SR,
     metric: Metric = COMPANY,
     content: float = 5.0,
-    spare: int = 4,
+    spare: int = 0,
     carry: int = 10,
 ) -> Conversation:
-    """Route to the event, then auction; ask farther, and those less dispensable, as need be.
+    """Route to the event, then auction; ask farther as need be.
 
     A bid of neighbours above ``content``, in the metric's unit, is asked to be bettered by their
     neighbours. For up to ``spare`` hops only robots bid that the network can spare; then all do,

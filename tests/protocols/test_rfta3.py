@@ -66,9 +66,11 @@ def test_a_bridge_stays_while_others_can_go():
     """Robot 1 joins 0 to 2; it is the nearest and the fullest."""
     line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
     site = (1.0, 0.3)
-    talk = converse(rfta3, network(line, 1.1, energy=[60, 100, 70]), site, 1)
+    sparing = partial(rfta3, spare=4)
+    talk = converse(sparing, network(line, 1.1, energy=[60, 100, 70]), site, 1)
     assert talk.award.winner == 2
-    alone = converse(rfta3, network(line, 1.1, energy=[1, 100, 1]), site, 1)
+    assert converse(rfta3, network(line, 1.1, energy=[60, 100, 70]), site, 1).award.winner == 1
+    alone = converse(sparing, network(line, 1.1, energy=[1, 100, 1]), site, 1)
     assert alone.award.winner == 1  # nobody else can: then it goes
 
 
