@@ -235,3 +235,9 @@ def test_a_key_is_of_what_is_run_and_nothing_else():
     assert Task.of({"seed": 2}).key != task.key
     assert Task.of({"seed": 1}, tables=("robots",)).key != task.key
     assert Task.of({"seed": 1}, function="deeds:note").key != task.key
+
+
+def test_a_varied_event_process_does_not_hide_how_many_events_there_were():
+    study = study_from({"axes": {"events": ["uniform", "bursts"]}})
+    assert [cell.labels["event_process"] for cell in study.resolved] == ["uniform", "bursts"]
+    assert all("events" not in cell.labels for cell in study.resolved)
