@@ -177,6 +177,7 @@ def test_live_and_from_the_file_look_the_same(viewer, tmp_path):
     path = tmp_path / "run.rrd"
     simulation([RerunRecorder(path, key="from-file", properties={})], rounds=8).run()
     viewer.open(path)
+    viewer.front("Event")  # a test before may have sent it behind
     viewer.go("round", sequence=6)
     expected = [np.array(viewer.picture(name)) for name in ("World", "Event")]
     live = RerunRecorder(None, key="live-again", properties={}, live=viewer.url, flush_rounds=1)
@@ -187,6 +188,7 @@ def test_live_and_from_the_file_look_the_same(viewer, tmp_path):
         if found and any(t.name == "round" and t.end == 8 for t in found[0].timelines):
             break
         time.sleep(0.1)
+    viewer.front("Event")
     viewer.go("round", sequence=6)
     assert "live-again" in str(viewer.state().active_recording)
     shown = [np.array(viewer.picture(name)) for name in ("World", "Event")]
