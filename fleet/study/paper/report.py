@@ -51,8 +51,8 @@ def write_report(out: Path, results: Results, command: str) -> Path:
     paper = results.where(motion=motions[0])
     listed = [*theory_claims(), *claims(paper)]
     tables = [_table(results, world, motions) for world in TITLES]
-    said = [[c.where, c.says, c.measured, c.verdict] for c in listed]
-    _write_csv(out / "claims.csv", ["where", "says", "measured", "verdict"], said)
+    said = [[c.where, c.says, c.measured, c.verdict, c.rule] for c in listed]
+    _write_csv(out / "claims.csv", ["where", "says", "measured", "verdict", "holds if"], said)
     for number, table in zip((2, 3), tables, strict=True):
         lines = [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]]
         _write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
