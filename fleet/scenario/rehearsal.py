@@ -9,7 +9,8 @@ from __future__ import annotations
 import traceback
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
-from math import dist
+from math import dist, isnan
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,8 @@ def rehearse(protocol: ProtocolFunction, called: str) -> None:
     """Hold one conversation between two robots.
 
     Raises:
-        BadInput: it fails, never ends, says what is no transmission, or ends without an award.
+        BadInput: it fails, never ends, says what is no transmission, ends without an award, or
+            hears bids that are no numbers.
     """
     try:
         award = _play(protocol)
@@ -52,6 +54,10 @@ def rehearse(protocol: ProtocolFunction, called: str) -> None:
         raise bad("protocol", f"{called!r} fails{_line(error)}: {_reason(error)}") from error
     if not isinstance(award, Award):
         raise bad("protocol", f"{called!r} returns {_kind(award)}; expected an Award at its end")
+    costs: list[Any] = [bid.cost for bid in award.bids]
+    for cost in costs:
+        if not isinstance(cost, Real) or isnan(cost):
+            raise bad("protocol", f"{called!r}: a bid's cost is {cost!r}; expected a number")
 
 
 def _play(protocol: ProtocolFunction) -> object:

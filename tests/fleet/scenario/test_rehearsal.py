@@ -37,6 +37,12 @@ def talks(view, event, source):
 
 def metric(robot):
     return 1.0
+
+def nothing(robot, site):
+    return float("nan")
+
+def words(robot, site):
+    return "cheap"
 '''
 
 
@@ -69,6 +75,13 @@ def test_what_is_no_protocol_is_refused_before_the_run(mine, name, said):
 def test_a_metric_is_tried_out_too(mine):
     with pytest.raises(BadInput, match=r"takes 1 positional argument but 2 were given"):
         fleet.run(fleet.Scenario.of(protocol={"name": "rfta2", "metric": f"{mine}:metric"}))
+
+
+@pytest.mark.parametrize(("name", "said"), [("nothing", "nan"), ("words", "'cheap'")])
+def test_bids_are_numbers(mine, name, said):
+    chosen = {"name": "rfta2", "metric": f"{mine}:{name}"}
+    with pytest.raises(BadInput, match=f"a bid's cost is {said}; expected a number"):
+        fleet.run(fleet.Scenario.of(protocol=chosen, motion="straight"))
 
 
 def test_parameters_that_only_the_protocol_looks_at():
