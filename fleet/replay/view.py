@@ -7,6 +7,7 @@ and sends nothing anywhere else.
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
 import tempfile
@@ -15,6 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from threading import current_thread, main_thread
 
 from fleet.replay.serving import LOOPBACK, Part, parts_of, serving
 
@@ -39,6 +41,8 @@ def view(
     Raises:
         ValueError: a file cannot be read, or no window can be opened here.
     """
+    if current_thread() is main_thread():  # shells have what they start behind ignore Ctrl-C
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     with _ready(recordings, timeline) as ready:
         try:
             if web:

@@ -7,6 +7,8 @@ from typing import Any
 
 from fleet.study.statistics import Difference, Interval
 
+FEWEST_PAIRS = 6  # of which all on one side are as rare as 3 in 100
+
 
 def estimate(interval: Interval) -> str:
     """A mean with half the width of its interval: ``391.2 ± 8.7``."""
@@ -44,8 +46,8 @@ def plain(value: Any) -> str:
 
 
 def excludes_zero(found: Difference) -> bool:
-    """Whether the interval says that there is a difference."""
-    return found.low > 0.0 or found.high < 0.0
+    """Whether the interval says that there is a difference; of too few pairs it cannot."""
+    return found.pairs >= FEWEST_PAIRS and (found.low > 0.0 or found.high < 0.0)
 
 
 def _digits_of(found: Difference) -> int:

@@ -17,7 +17,7 @@ from fleet.study.report.layout import Layout, layout
 from fleet.study.report.quantities import measures, name_of, short_name
 from fleet.study.report.runs import Runs, runs_of
 from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
-from fleet.study.report.text import plain
+from fleet.study.report.text import FEWEST_PAIRS, plain
 from fleet.study.result import StudyResult
 from fleet.study.tables import runs_table, side_table
 
@@ -112,7 +112,8 @@ def _sections(
         yield Section(
             f"Differences from {baseline}",
             f"{_pairs(plan)} Intervals are 95 % BCa bootstrap intervals of the mean difference; d"
-            " is Cohen’s for pairs. In bold: the interval excludes 0.",
+            " is Cohen’s for pairs. In bold: the interval excludes 0,"
+            f" if there are {FEWEST_PAIRS} pairs or more.",
             list(_drawn(
                 "differences", against, plan, figures.draw_contrasts,
                 f"Paired differences from {baseline}", beside, number,

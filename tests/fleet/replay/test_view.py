@@ -99,7 +99,10 @@ def test_ctrl_c_ends_the_web_viewer(rounds):
     with process:
         address = process.stdout.readline().strip()
         process.send_signal(signal.SIGINT)
-        said, complained = process.communicate(timeout=20)
+        try:
+            said, complained = process.communicate(timeout=20)
+        finally:
+            process.kill()
     assert process.returncode == 0
     assert said == "over\n"
     assert complained == ""
