@@ -10,10 +10,11 @@ from math import inf, pi
 import numpy as np
 
 from fleet.course import Course
+from fleet.crew import Fleet, Labels
 from fleet.energy import Battery
 from fleet.handler import Handler
 from fleet.motion.catalogue import MOTIONS
-from fleet.observer import Observer
+from fleet.observer import Audience, Observer
 from fleet.radio import Radio
 from fleet.radio.ideal import IdealRadio
 from fleet.radio.lossy import LossyRadio, RadioSpec
@@ -29,7 +30,7 @@ from fleet.scenario.choices import (
 )
 from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
-from fleet.simulation import Fleet, Labels, Simulation
+from fleet.simulation import Simulation
 from fleet.timing import Stream
 from protocols.links import connected, unit_disc
 from protocols.messages import Point
@@ -73,9 +74,8 @@ def prepare(
     random = streams(scenario.seed)
     protocol = bind_protocol(scenario)
     world = make_world(scenario.world)
-    intervals = [o.sample_interval for o in observers if o.sample_interval is not None]
-    interval = min(intervals, default=None)
-    motion = make_motion(scenario.motion, scenario.robot, world.arena, interval)
+    audience = Audience(observers)
+    motion = make_motion(scenario.motion, scenario.robot, world.arena, audience.sample_interval)
     solid = MOTIONS[scenario.motion.name].solid
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     radio_choice = radio_spec(scenario.radio)
@@ -107,7 +107,7 @@ def prepare(
         motion,
         make_handler(scenario, world, random),
         make_course(scenario, world, len(robots), random),
-        observers,
+        audience,
     )
 
 

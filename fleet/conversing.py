@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from fleet.agenda import Agenda
-from fleet.observer import Observer, Sent
+from fleet.observer import Audience, Excerpt
 from fleet.radio import BrokenProtocol, Radio
 from fleet.results import Tally
 from fleet.robot import Robot
@@ -58,7 +58,7 @@ class Conversations:
     radio: Radio
     agenda: Agenda
     tally: Tally
-    observers: Sequence[Observer]
+    audience: Audience
     frame_energy: float  # that a sender pays for each frame [J]
     concluded: Concluded
     broken: Broken
@@ -79,7 +79,10 @@ class Conversations:
     def _play_at_once(self, task: Task, words: Conversation, now: float) -> None:
         """The whole conversation, over a radio that takes no time and loses nothing."""
         say, transmit, kinds = words.send, self.radio.transmit, self.tally.kinds
+        first, listened = self._number + 1, self.audience.listens
         most = self._number + WORDS_PER_ROBOT * len(self.robots)
+        said: list[Transmission] = []
+        by_whom: list[Heard] = []
         heard = None
         try:
             while True:
@@ -92,10 +95,17 @@ class Conversations:
                         f"the conversation about event {task.event.id} does not end; last said:"
                         f" {transmission}"
                     )
-                if self.observers or self.frame_energy:
-                    self._note(task, transmission, heard, now)
+                if listened:
+                    said.append(transmission)
+                    by_whom.append(heard)
+                if self.frame_energy:
+                    self._charge(transmission, 1)
         except StopIteration as end:
             award: Award = end.value
+        finally:
+            if said:
+                once = (1,) * len(said)
+                self.audience.transcribed(Excerpt(first, now, task.event.id, said, by_whom, once))
         self.under_way -= 1
         self.concluded(task, award)
 
@@ -118,22 +128,17 @@ class Conversations:
         reception = self.radio.transmit(transmission, now)
         self.tally.kinds[transmission.kind] += 1
         self._number += 1
-        self._note(talk.task, transmission, reception.heard, now, reception.attempts)
+        attempts = reception.attempts
+        self.tally.repeated += attempts - 1
+        self._charge(transmission, attempts)
+        if self.audience.listens:
+            line = [transmission], [reception.heard], [attempts]
+            self.audience.transcribed(Excerpt(self._number, now, talk.task.event.id, *line))
         heard = self._in_time(talk, transmission, reception.heard, now)
         self._wait(talk, heard, now + reception.delay)
 
-    def _note(
-        self,
-        task: Task,
-        transmission: Transmission,
-        heard: Heard,
-        now: float,
-        attempts: int = 1,
-    ) -> None:
-        """Tell observers of a transmission, charge its sender."""
-        self.tally.repeated += attempts - 1
-        for observer in self.observers:
-            observer.sent(Sent(self._number, now, task.event.id, transmission, heard, attempts))
+    def _charge(self, transmission: Transmission, attempts: int) -> None:
+        """What its sender pays for a transmission."""
         if self.frame_energy:
             self.robots[transmission.sender].battery.drain(self.frame_energy * attempts)
 

@@ -3,22 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fleet.faults import Blackout
 from fleet.motion import Motion
-from fleet.observer import Observer
+from fleet.observer import Audience
 from fleet.radio import Radio
-from fleet.robot import Robot, SeenRobot
+from fleet.robot import Robot, RobotSpec, SeenRobot
 from protocols.messages import Point, RobotId, View
-
-if TYPE_CHECKING:
-    from fleet.simulation import Fleet
+from protocols.topology import Topology
+from worlds.arena import Arena
 
 REFRESH = 0.1  # links are at most so old while robots drive and anybody talks or beacons [s]
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """What a run is called in its summary and in its recording."""
+
+    protocol: str
+    motion: str
+    world: str
+    seed: int
+    search_radius: float  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """A fleet in its world, live: robots and topology change as the run goes on."""
+
+    labels: Labels
+    arena: Arena
+    spec: RobotSpec
+    robots: Sequence[Robot]
+    topology: Topology  # the true one, whatever robots believe
 
 
 class Crew:
@@ -33,7 +54,7 @@ class Crew:
         fleet: Fleet,
         radio: Radio,
         motion: Motion,
-        observers: Sequence[Observer],
+        audience: Audience,
         *,
         many_drive: bool,
     ) -> None:
@@ -45,14 +66,14 @@ class Crew:
         self._fleet = fleet
         self._radio = radio
         self._motion = motion
-        self._observers = observers
+        self._audience = audience
         places = np.array([robot.position for robot in fleet.robots], float).reshape(-1, 2)
         self._x, self._y = places[:, 0].copy(), places[:, 1].copy()
-        self._slice = min((o.link_interval or inf for o in observers), default=inf)
+        self._slice = audience.link_interval or inf
         if radio.takes_time:
             self._slice = min(self._slice, REFRESH)
         self._refreshed = 0.0
-        self._true_links = bool(observers) and radio.takes_time
+        self._true_links = audience.present and radio.takes_time
         self._blackouts: list[Blackout] = []
         self._idle = fleet.spec.extra.idle  # [W]
         self._paid = [0.0] * len(fleet.robots)  # until when each has paid for standing [s]
@@ -76,7 +97,7 @@ class Crew:
         self.stand(now)
         self._radio.refresh(moved, now)
         self._refreshed = now
-        if self._observers and moved:
+        if self._audience.present and moved:
             self._show(moved, now)
 
     def freshen(self, now: float) -> None:
@@ -146,7 +167,5 @@ class Crew:
             for robot in moved:
                 if robot.alive:
                     self._fleet.topology.move(robot.id, robot.position)
-        samples = self._motion.samples()
-        for observer in self._observers:
-            observer.moved(samples)
-            observer.relinked(now)
+        self._audience.moved(self._motion.samples())
+        self._audience.relinked(now)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +14,8 @@ from fleet.motion import Trip
 from protocols.messages import Award, Event, Heard, Move, RobotId, Transmission
 
 if TYPE_CHECKING:
+    from fleet.crew import Fleet
     from fleet.results import Summary
-    from fleet.simulation import Fleet
 
 
 class Sent(NamedTuple):
@@ -25,6 +27,24 @@ class Sent(NamedTuple):
     transmission: Transmission
     heard: Heard
     attempts: int = 1  # frames it took
+
+
+class Excerpt(NamedTuple):
+    """Lines of the transcript in a row: about one event, on the air at one time."""
+
+    first: int  # the number of the first; the others follow
+    time: float  # [s]
+    event: int  # the id of the event they were about
+    transmissions: Sequence[Transmission]
+    heard: Sequence[Heard]  # by whom each
+    attempts: Sequence[int]  # frames each took
+
+    def lines(self) -> list[Sent]:
+        """One by one."""
+        count = len(self.transmissions)
+        numbers = range(self.first, self.first + count)
+        times, events = (self.time,) * count, (self.event,) * count
+        return [*map(Sent, numbers, times, events, self.transmissions, self.heard, self.attempts)]
 
 
 class Observer:
@@ -45,6 +65,14 @@ class Observer:
 
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """``source`` is told of the event; again, by another robot, if a trip failed."""
+
+    def transcribed(self, excerpt: Excerpt) -> None:
+        """Transmissions were made; by default :meth:`sent` is told of each.
+
+        Over a radio that takes no time it is all of a conversation at once, after its last.
+        """
+        for sent in excerpt.lines():
+            self.sent(sent)
 
     def sent(self, sent: Sent) -> None:
         """A transmission was made."""
@@ -81,3 +109,41 @@ class Observer:
 
     def closed(self) -> None:
         """Called last, also when the run broke off: let go of files."""
+
+
+HOOKS = tuple(name for name in vars(Observer) if callable(getattr(Observer, name)))
+"""What a run tells of."""
+
+
+class Audience(Observer):
+    """All observers of a run as one: what happens is told to those who override its hook."""
+
+    def __init__(self, observers: Sequence[Observer] = ()) -> None:
+        self.present = len(observers) > 0
+        self.sample_interval = _shortest([o.sample_interval for o in observers])
+        self.link_interval = _shortest([o.link_interval for o in observers])
+        self.listens = any(_overrides(o, "transcribed", "sent") for o in observers)
+        self._observers = tuple(observers)
+        for hook in set(HOOKS) - {"sent", "closed"}:
+            also = ("sent",) if hook == "transcribed" else ()
+            told = [getattr(o, hook) for o in observers if _overrides(o, hook, *also)]
+            setattr(self, hook, told[0] if len(told) == 1 else partial(_tell, told))
+
+    def closed(self) -> None:
+        """Tell everybody, whatever one of them raises."""
+        with ExitStack() as stack:
+            for observer in reversed(self._observers):
+                stack.callback(observer.closed)
+
+
+def _tell(told: Sequence[Callable[..., None]], *what: Any) -> None:
+    for hook in told:
+        hook(*what)
+
+
+def _overrides(observer: Observer, *hooks: str) -> bool:
+    return any(getattr(type(observer), hook) is not getattr(Observer, hook) for hook in hooks)
+
+
+def _shortest(intervals: Sequence[float | None]) -> float | None:
+    return min((interval for interval in intervals if interval is not None), default=None)

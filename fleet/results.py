@@ -11,7 +11,7 @@ from fleet.stream import StreamFigures
 from protocols.messages import KINDS
 
 if TYPE_CHECKING:
-    from fleet.simulation import Fleet
+    from fleet.crew import Fleet
 
 
 @dataclass(frozen=True, slots=True)

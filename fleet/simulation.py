@@ -4,53 +4,27 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from math import dist, inf
 
 from fleet.agenda import Agenda
 from fleet.conversing import Conversations
 from fleet.course import Course
-from fleet.crew import Crew
+from fleet.crew import Crew, Fleet
 from fleet.dispatch import Dispatch, Dispatcher
 from fleet.faults import Breakdown
 from fleet.handler import Handler, Notice
 from fleet.motion import Motion, Trip
-from fleet.observer import Observer
+from fleet.observer import Audience
 from fleet.radio import Radio
 from fleet.results import Summary, Tally, summarise
-from fleet.robot import Robot, RobotSpec
+from fleet.robot import Robot
 from fleet.stream import stream_figures
 from fleet.tasks import State, Task, TaskBook
 from fleet.timing import Rounds, Stream
 from protocols.geometry import squared_distance
 from protocols.messages import Award, Event, Move, ProtocolFunction, RobotId
-from protocols.topology import Topology
-from worlds.arena import Arena
 from worlds.events import Occurrence
-
-
-@dataclass(frozen=True, slots=True)
-class Labels:
-    """What a run is called in its summary and in its recording."""
-
-    protocol: str
-    motion: str
-    world: str
-    seed: int
-    search_radius: float  # [m]
-
-
-@dataclass(frozen=True, slots=True)
-class Fleet:
-    """A fleet in its world, live: robots and topology change as the run goes on."""
-
-    labels: Labels
-    arena: Arena
-    spec: RobotSpec
-    robots: Sequence[Robot]
-    topology: Topology  # the true one, whatever robots believe
 
 
 class Simulation:
@@ -64,7 +38,7 @@ class Simulation:
         motion: Motion,
         handler: Handler,
         course: Course,
-        observers: Sequence[Observer] = (),
+        audience: Audience,
     ) -> None:
         self.fleet = fleet
         self.tally = Tally()
@@ -73,10 +47,10 @@ class Simulation:
         self._course = course
         self._handler = handler
         self._motion = motion
-        self._observers = tuple(observers)
+        self._audience = audience
         self._agenda = Agenda()
         many_drive = isinstance(course.timing, Stream)
-        self._crew = Crew(fleet, radio, motion, self._observers, many_drive=many_drive)
+        self._crew = Crew(fleet, radio, motion, audience, many_drive=many_drive)
         self._talks: Conversations | Dispatch
         if many_drive and isinstance(protocol, Dispatcher):
             self._talks = Dispatch(
@@ -85,7 +59,7 @@ class Simulation:
         else:
             self._talks = Conversations(
                 protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
-                self._observers, fleet.spec.extra.transmission, self._concluded, self._broken_off,
+                audience, fleet.spec.extra.transmission, self._concluded, self._broken_off,
             )  # fmt: skip
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
         self._relocating: dict[int, tuple[Task, bool]] = {}  # by robot: why, and if it carries it
@@ -99,7 +73,7 @@ class Simulation:
         """Play to the end: of the network's life, of the rounds, or of the time."""
         started = time.perf_counter()
         try:
-            self._tell(lambda o: o.run_started(self.fleet))
+            self._audience.run_started(self.fleet)
             self._begin()
             while not self._over:
                 self._go_on()
@@ -107,10 +81,10 @@ class Simulation:
             for robot in list(self._since):
                 self._release(self.fleet.robots[robot])
             summary = self._summary(time.perf_counter() - started)
-            self._tell(lambda o: o.run_ended(summary))
+            self._audience.run_ended(summary)
             return summary
         finally:
-            self._tell(lambda o: o.closed())
+            self._audience.closed()
 
     def _begin(self) -> None:
         """Put down what is known to come."""
@@ -198,7 +172,7 @@ class Simulation:
     def _close(self, task: Task, state: State, reason: str = "") -> None:
         """A task has come to its end; in rounds the next event may happen."""
         self.book.close(task, state, self.now, reason)
-        self._tell(lambda o: o.event_closed(task.event, state.value, self.now))
+        self._audience.event_closed(task.event, state.value, self.now)
         if isinstance(self._course.timing, Rounds):
             if self._in_hand is task:
                 self._in_hand = None
@@ -227,10 +201,10 @@ class Simulation:
             return
         if source is None:
             source = self._handler.collector(task.event.position, on_air)
-        if self._observers and on_air != self._told_on_air:
+        if on_air != self._told_on_air:
             self._told_on_air = list(on_air)
-            self._tell(lambda o: o.air_changed(self._told_on_air, self.now))
-        self._tell(lambda o: o.event_raised(task.event, source, self.now))
+            self._audience.air_changed(self._told_on_air, self.now)
+        self._audience.event_raised(task.event, source, self.now)
         self._talks.start(task, source, self.now)
 
     # What conversations come to
@@ -244,7 +218,7 @@ class Simulation:
         if award.winner is not None:
             found = min(found, squared_distance(robots[award.winner].position, site))
         self.tally.closest += self._crew.nobody_nearer(site, found)
-        self._tell(lambda o: o.awarded(task.event, award, self.now))
+        self._audience.awarded(task.event, award, self.now)
         winner = None if award.winner is None else robots[award.winner]
         set_off = [self._relocate(move, winner, task) for move in award.moves]
         if winner is None and any(set_off):
@@ -260,7 +234,7 @@ class Simulation:
     def _broken_off(self, task: Task, why: str) -> None:
         """A conversation came to no end. The handler hears nothing, and asks again."""
         if task.state is State.REPORTED:
-            self._tell(lambda o: o.broken_off(task.event, why, self.now))
+            self._audience.broken_off(task.event, why, self.now)
             self._put_off(task, why, silent=True)
 
     def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
@@ -292,7 +266,7 @@ class Simulation:
         robot.engaged = True
         self._since[robot.id] = self.now
         self._trips[robot.id] = task
-        self._tell(lambda o: o.departed(task.event, robot.id, self.now))
+        self._audience.departed(task.event, robot.id, self.now)
         self._motion.depart(robot, task.event.position)
 
     def _relocate(self, move: Move, winner: Robot | None, task: Task) -> bool:
@@ -305,14 +279,14 @@ class Simulation:
         robot.engaged = True
         self._since[robot.id] = self.now
         self._relocating[robot.id] = task, winner is None
-        self._tell(lambda o: o.relocating(task.event, move, self.now))
+        self._audience.relocating(task.event, move, self.now)
         self._motion.depart(robot, move.position)
         return True
 
     def _relocated(self, robot: Robot, trip: Trip) -> None:
         """A relocation has ended: what the robot carried is told to it anew."""
         task, carries = self._relocating.pop(robot.id)
-        self._tell(lambda o: o.relocated(task.event, trip))
+        self._audience.relocated(task.event, trip)
         self._release(robot)
         if not carries or task.state is not State.WAITING:
             return
@@ -335,7 +309,7 @@ class Simulation:
             self._relocated(robot, trip)
             return
         task = self._trips.pop(robot.id)
-        self._tell(lambda o: o.trip_ended(task.event, trip))
+        self._audience.trip_ended(task.event, trip)
         if trip.outcome != "arrived":
             tally.failed += 1
             self._release(robot)
@@ -408,7 +382,3 @@ class Simulation:
                 radio.beacons, self._handler.sensor_messages,
             )  # fmt: skip
         return summarise(self.fleet, self.tally, len(self.book.tasks), self.now, wall_time, figures)
-
-    def _tell(self, hook: Callable[[Observer], None]) -> None:
-        for observer in self._observers:
-            hook(observer)

@@ -7,10 +7,10 @@ from time import monotonic
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from fleet.crew import Fleet
 from fleet.motion import Trip
 from fleet.observer import Observer
 from fleet.results import Summary
-from fleet.simulation import Fleet
 from protocols.messages import Event
 
 

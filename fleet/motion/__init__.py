@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,7 @@ from protocols.messages import Point, RobotId
 Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
 
 
-@dataclass(frozen=True, slots=True)
-class Trip:
+class Trip(NamedTuple):
     """One robot's drive to one site, from departure to the end, whatever the end.
 
     The last five split up ``energy``; they add up to it. What a motion has no notion of is 0.

@@ -197,8 +197,7 @@ class DrivenMotion:
 
     def samples(self) -> NDArray[np.float64]:
         """Poses under way since the last call, by time and robot."""
-        rows = self._movers.samples()
-        return rows[np.lexsort((rows[:, 0], rows[:, 1]))]
+        return self._movers.samples()
 
     def _last_step(self, until: float) -> int:
         """The last step not after ``until``, within rounding."""

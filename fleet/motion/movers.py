@@ -68,7 +68,9 @@ class Movers:
         self._found = np.zeros(0, np.int64)
         self._ahead = np.zeros((1, 16), PIECE)
         self._samples = np.zeros((1024 if law[0]["sample"] else 0, len(SAMPLE_FIELDS)))
-        self._kept: list[NDArray[np.float64]] = []
+        self._kept = 0  # rows of it in use
+        self._full: list[NDArray[np.float64]] = []  # what did not fit in
+        self._mixed = False  # whether rows are of several robots
         self._more_slots()
 
     def depart(
@@ -123,12 +125,12 @@ class Movers:
         Returns the steps made, and who needs looking after: (place in the order of departure,
         phase of the trip).
         """
-        if len(self._samples) and self._count > len(self._samples):
-            self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
+        if len(self._samples):
+            self._mixed |= self._count > 1
+            self._more_samples()
         drive = self._run_openly if self._wires is None else self._run
         made, kept, over = drive(step, steps)
-        if kept:
-            self._kept.append(self._samples[:kept].copy())
+        self._kept += kept
         found: list[tuple[int, int]] = self.traffic.over[:over].tolist()
         return made, found
 
@@ -155,9 +157,16 @@ class Movers:
         return Account._make(self._accounts.item(slot))
 
     def samples(self) -> NDArray[np.float64]:
-        """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`."""
-        rows = np.vstack(self._kept) if self._kept else np.empty((0, len(SAMPLE_FIELDS)))
-        self._kept.clear()
+        """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`, by time
+        and robot.
+        """
+        rows = self._samples[: self._kept].copy()
+        if self._full:
+            rows = np.concatenate([*self._full, rows])
+            self._full.clear()
+        if self._mixed:
+            rows = rows[np.lexsort((rows[:, 0], rows[:, 1]))]
+        self._kept, self._mixed = 0, False
         return rows
 
     def stand(self, slot: int, step: int) -> None:
@@ -189,17 +198,17 @@ class Movers:
 
     def _run(self, step: int, steps: int) -> tuple[int, int, int]:
         assert self._wires is not None
-        return self._drive(
-            self._floor, self.traffic, self._wires, self._active, step, steps, self._samples
-        )
+        room = self._samples[self._kept :]
+        return self._drive(self._floor, self.traffic, self._wires, self._active, step, steps, room)
 
     def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
         """The same as the compiled loop, with the engine stepped over its public interface."""
         assert self._engine is not None
         movers, pieces, law = self.traffic.movers, self.traffic.pieces, self.traffic.law[0]
+        room = self._samples[self._kept :]
         kept = over = made = 0
         while made < steps and over == 0:
-            if len(self._samples) and kept + self._count > len(self._samples):
+            if law["sample"] and kept + self._count > len(room):
                 break
             if command(movers, pieces, law, self._active, step + made) > 0:
                 self._engine.step(movers, self._active, float(law["dt"]), int(law["substeps"]))
@@ -207,7 +216,7 @@ class Movers:
             self._engine.park_those_over(movers, self._active)
             made += 1
             if law["sample"]:
-                kept = sample(movers, law, self._active, self._samples, kept, step + made)
+                kept = sample(movers, law, self._active, room, kept, step + made)
         report(movers, self._active, self.traffic.poses, self.traffic.over)
         return made, kept, over
 
@@ -227,6 +236,14 @@ class Movers:
         self._slots = _longer(self._slots, have + more)
         self._found = np.zeros(have + more, np.int64)
         self._free.extend(range(have + more - 1, have - 1, -1))
+
+    def _more_samples(self) -> None:
+        """Room for everybody at least once."""
+        if self._kept + self._count > len(self._samples):
+            self._full.append(self._samples[: self._kept].copy())
+            self._kept = 0
+        if self._count > len(self._samples):
+            self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
 
     def _more_pieces(self, needed: int) -> None:
         if needed > self.traffic.pieces.shape[1]:

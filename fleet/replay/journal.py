@@ -1,18 +1,15 @@
 """What a run tells the process that writes its recording, and how it gets there.
 
 The run must not wait for its recording, so another process draws it. What crosses the pipe
-is small: where everybody started, then for every few rounds what happened in order, the
-transmissions, and the poses of those under way. The other end works out the rest.
+is small: where everybody started, then for every few rounds what happened in order, what was
+said, and the poses of those under way among it. The other end works out the rest.
 """
 
 from __future__ import annotations
 
 import pickle
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import IO, Any, NamedTuple, TypeAlias
-
-import numpy as np
-from numpy.typing import NDArray
 
 from protocols.messages import Heard, Point, RobotId
 
@@ -49,7 +46,8 @@ class TripEnd(NamedTuple):
 RELOCATED = "relocated"  # the outcome of a trip to a place that is no event
 
 Entry: TypeAlias = tuple[Any, ...]
-"""A happening: its name, the transmissions made before it, and what the teller is told."""
+"""A happening: its name, and what the teller is told of it, in plain values: pickle takes ten
+times as long for values of classes of our own."""
 
 
 class Scene(NamedTuple):
@@ -71,14 +69,6 @@ class Scene(NamedTuple):
     motion: str
     world: str
     seed: int
-
-
-class Batch(NamedTuple):
-    """Some rounds of a run."""
-
-    entries: list[Entry]
-    told: tuple[Sequence[Any], ...]  # the columns of Told; () if there are none
-    samples: NDArray[np.float64]  # (k, 6), as fleet.motion.SAMPLE_FIELDS
 
 
 def send(pipe: IO[bytes], tag: str, *content: Any) -> None:

@@ -7,30 +7,27 @@ import subprocess
 import sys
 import tempfile
 import time
-from array import array
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from operator import attrgetter
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.motion import SAMPLE_FIELDS, Trip
-from fleet.observer import Observer, Sent
+from fleet.motion import Trip
+from fleet.observer import Excerpt, Observer
 from fleet.replay.journal import RELOCATED, Entry, Scene, TripEnd, send
 from protocols.messages import Award, Event, Move, RobotId
 
 if TYPE_CHECKING:
+    from fleet.crew import Fleet
     from fleet.energy import Battery
     from fleet.results import Summary
-    from fleet.simulation import Fleet
 
-MANY_SAMPLES = 50_000  # poses that are held back at most
-MANY_SENT = 50_000  # transmissions that are held back at most
-NO_SAMPLES = np.empty((0, len(SAMPLE_FIELDS)))
-FLAT_TRIP = attrgetter(*TripEnd._fields)
+MANY_POSES = 50_000  # that are held back at most
+MANY_LINES = 50_000  # of the transcript that are held back at most
+FLAT = len(TripEnd._fields)  # of a trip's fields go into the recording: the first
 PIPE = 1 << 20  # [bytes] that the writer may lag behind before the run waits
 LIVE_PAUSE = 0.1  # [s] between looks of a live viewer
 
@@ -82,10 +79,8 @@ class RerunRecorder(Observer):
         self._batteries: list[Battery] = []
         self._all_drain = True  # also robots that stand still
         self._entries: list[Entry] = []
-        self._sent: list[Sent] = []
-        self._samples: list[NDArray[np.float64]] = []
-        self._sampled = 0
-        self._told = 0  # transmissions of the run so far, up to the last flush
+        self._lines = 0  # of the transcript, and
+        self._poses = 0  # since the last flush
         self._latest = -1  # id of the latest event
         self._rounds = 0  # events since the last flush
         self._flushed = time.monotonic()
@@ -138,17 +133,20 @@ class RerunRecorder(Observer):
             self._rounds += 1
         self._note("raised", time, event.id, event.position, source)
 
-    def sent(self, sent: Sent) -> None:
+    def transcribed(self, excerpt: Excerpt) -> None:
         """Note it."""
-        self._sent.append(sent)
+        first, time, event, transmissions, heard, attempts = excerpt
+        kinds, senders, receivers, bids = zip(*transmissions, strict=True)
+        offers = [None if bid is None else tuple(bid) for bid in bids]
+        self._note("said", time, event, first, kinds, senders, receivers, offers, heard, attempts)
+        self._lines += len(kinds)
+        if self._lines > MANY_LINES:
+            self.flush()
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """Note it."""
-        bids = [(cost, robot) for cost, robot in award.bids]
-        moves = [(move.robot, move.position) for move in award.moves]
+        bids, moves = [*map(tuple, award.bids)], [*map(tuple, award.moves)]
         self._note("awarded", time, event.id, award.winner, award.auctioneer, bids, moves)
-        if len(self._sent) > MANY_SENT:
-            self.flush()
 
     def broken_off(self, event: Event, reason: str, time: float) -> None:
         """Note it."""
@@ -168,21 +166,20 @@ class RerunRecorder(Observer):
 
     def relocated(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        end = TripEnd(*FLAT_TRIP(trip))._replace(outcome=RELOCATED)
-        self._note("ended", event.id, tuple(end), self._charges(trip.robot))
+        end = trip.robot, RELOCATED, *trip[2:FLAT]
+        self._note("ended", event.id, end, self._charges(trip.robot))
 
     def moved(self, samples: NDArray[np.float64]) -> None:
-        """Note the poses; they are the observer's own."""
+        """Note the poses."""
         if len(samples):
-            self._samples.append(samples)
-            self._note("moved", len(samples))
-            self._sampled += len(samples)
-            if self._sampled > MANY_SAMPLES:
+            self._note("moved", samples.tobytes())
+            self._poses += len(samples)
+            if self._poses > MANY_POSES:
                 self.flush()
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        self._note("ended", event.id, FLAT_TRIP(trip), self._charges(trip.robot))
+        self._note("ended", event.id, trip[:FLAT], self._charges(trip.robot))
 
     def run_ended(self, summary: Summary) -> None:
         """Keep the summary with the recording, but for what differs from run to run."""
@@ -208,31 +205,19 @@ class RerunRecorder(Observer):
 
     def flush(self) -> None:
         """Send the notes taken since the last time."""
-        if not self._entries and not self._sent:
-            return
-        told: tuple[Any, ...] = ()
-        if self._sent:  # columns of plain values pass through the pipe much quicker than rows
-            numbers, times, events, transmissions, heard, attempts = zip(*self._sent, strict=True)
-            kinds, senders, receivers, bids = zip(*transmissions, strict=True)
-            costs = [None if bid is None else bid[0] for bid in bids]
-            bidders = [None if bid is None else bid[1] for bid in bids]
-            told = (
-                numbers, times, events, kinds, senders, receivers, costs, bidders, heard, attempts,
-            )  # fmt: skip
-        samples = np.concatenate(self._samples) if self._samples else NO_SAMPLES
-        self._tell("batch", self._entries, told, samples)
-        self._told += len(self._sent)
-        self._entries, self._sent, self._samples = [], [], []
-        self._sampled = self._rounds = 0
+        if self._entries:
+            self._tell("batch", self._entries)
+        self._entries = []
+        self._lines = self._poses = self._rounds = 0
         self._flushed = time.monotonic()
 
-    def _note(self, name: str, *what: Any) -> None:
-        self._entries.append((name, self._told + len(self._sent), *what))
+    def _note(self, *entry: Any) -> None:
+        self._entries.append(entry)
 
-    def _charges(self, robot: RobotId) -> bytes:
+    def _charges(self, robot: RobotId) -> list[float]:
         """What batteries hold: that of a robot that has driven, or all if all are drained."""
         drained = self._batteries if self._all_drain else [self._batteries[robot]]
-        return array("d", [battery.charge for battery in drained]).tobytes()
+        return [battery.charge for battery in drained]
 
     def _due(self) -> bool:
         """Whether a live viewer waits for news."""

@@ -13,8 +13,9 @@ from typing import IO, Any
 
 import numpy as np
 
+from fleet.motion import SAMPLE_FIELDS
 from fleet.replay.columns import Moment
-from fleet.replay.journal import Batch, Told, TripEnd, receive
+from fleet.replay.journal import Entry, Told, TripEnd, receive
 from fleet.replay.story import Conversation, Page, Story, UnderWay
 from fleet.replay.stream import Stream
 from protocols.messages import Award, Bid, Move, Point, RobotId
@@ -41,22 +42,10 @@ class Teller:
         for page in pages:
             page.started(story)
 
-    def tell(self, batch: Batch) -> None:
+    def tell(self, entries: Sequence[Entry]) -> None:
         """Replay some rounds; now and then, pass on what the pages made of them."""
-        lines = map(Told, *batch.told) if batch.told else iter(())
-        poses = 0
-        for name, number, *what in batch.entries:
-            while self._number < number:
-                self._say(next(lines))
-            if name == "moved":
-                (count,) = what
-                self._moved(batch.samples[poses : poses + count])
-                poses += count
-            else:
-                getattr(self, f"_{name}")(*what)
-        for line in lines:
-            self._say(line)
-        self._poses += poses
+        for name, *what in entries:
+            getattr(self, f"_{name}")(*what)
         waiting = self._story.round - self._sent_round
         if waiting >= self._chunk_rounds or self._poses >= CHUNK_POSES:
             self._send()
@@ -68,16 +57,21 @@ class Teller:
             page.finished(at, summary)
         self._send()
 
-    def _say(self, line: Told) -> None:
+    def _said(self, time: float, event: int, first: int, *columns: Sequence[Any]) -> None:
         story = self._story
-        self._number = line.number
-        story.now = line.time
-        talk = story.talks.get(line.event)
-        if talk is not None:
-            talk.lines.append(line)
-        at = self._moment(line.number)
-        for page in self._pages:
-            page.told(at, line)
+        story.now = time
+        talk = story.talks.get(event)
+        for number, (kind, sender, receiver, bid, heard, attempts) in enumerate(
+            zip(*columns, strict=True), first
+        ):
+            self._number = number
+            cost, bidder = bid or (None, None)
+            line = Told(number, time, event, kind, sender, receiver, cost, bidder, heard, attempts)
+            if talk is not None:
+                talk.lines.append(line)
+            at = self._moment(number)
+            for page in self._pages:
+                page.told(at, line)
 
     def _air(self, time: float, on_air: list[RobotId]) -> None:
         story = self._story
@@ -129,7 +123,9 @@ class Teller:
         for page in self._pages:
             page.departed(at, robot)
 
-    def _moved(self, samples: np.ndarray) -> None:
+    def _moved(self, rows: bytes) -> None:
+        samples = np.frombuffer(rows).reshape(-1, len(SAMPLE_FIELDS))
+        self._poses += len(samples)
         self._story.now = float(samples[-1, 1])
         robots = samples[:, 0].astype(int)
         self._story.positions[robots] = samples[:, 2:4]
@@ -138,12 +134,11 @@ class Teller:
         for page in self._pages:
             page.moved(at, samples)
 
-    def _ended(self, event: int, trip: tuple[Any, ...], energies: bytes) -> None:
+    def _ended(self, event: int, trip: tuple[Any, ...], charges: list[float]) -> None:
         story, end = self._story, TripEnd(*trip)
         story.now = end.ended
         story.positions[end.robot] = end.end
-        charge = np.frombuffer(energies)
-        story.energies[slice(None) if len(charge) == story.n else [end.robot]] = charge
+        story.energies[slice(None) if len(charges) == story.n else [end.robot]] = charges
         story.on_air &= story.energies > 0.0
         del story.under_way[end.robot]
         at = self._moment(self._number + 1)
@@ -191,7 +186,8 @@ def main() -> None:
                 teller = Teller(story, pages(), stream, 1 if live else CHUNK_ROUNDS)
             elif tag == "batch":
                 assert teller is not None
-                teller.tell(Batch(*content))
+                (entries,) = content
+                teller.tell(entries)
             elif tag == "summary":
                 (summary,) = content
                 stream.properties("summary", summary)

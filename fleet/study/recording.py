@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from fleet.crew import Fleet
 from fleet.motion import Trip
 from fleet.observer import Observer, Sent
 from fleet.results import Summary
-from fleet.simulation import Fleet
 from protocols.messages import Award, Event, RobotId
 
 Rows: TypeAlias = list[dict[str, Any]]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fleet.assembly import run, start, streams
+from fleet.crew import Fleet
 from fleet.energy import Battery
 from fleet.motion import Motion, Trip
 from fleet.observer import Observer
@@ -20,7 +21,6 @@ from fleet.results import Summary
 from fleet.robot import Robot, RobotSpec
 from fleet.scenario.choices import make_motion, make_world
 from fleet.scenario.loading import scenario_from
-from fleet.simulation import Fleet
 from fleet.study.energy.campaign import LONGEST, SHORTEST
 from fleet.study.task import Task
 from protocols.messages import Event, Point, RobotId

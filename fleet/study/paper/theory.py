@@ -9,9 +9,9 @@ from math import log, pi, sqrt
 import numpy as np
 
 from fleet.assembly import run
+from fleet.crew import Fleet
 from fleet.observer import Observer, Sent
 from fleet.scenario.model import Scenario
-from fleet.simulation import Fleet
 from fleet.study.paper.campaign import RANGES
 from fleet.study.paper.claims import Claim, judged
 from protocols.geometry import crossing

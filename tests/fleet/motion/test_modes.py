@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import sys
-from dataclasses import astuple, replace
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -49,7 +49,7 @@ def play(
         if halts and motion.moving and rng.random() < halts:
             motion.halt(motion.moving[int(rng.integers(len(motion.moving)))])
     state = [(r.position, r.heading, r.battery.charge) for r in robots]
-    return [astuple(trip) for trip in trips], state, motion.samples()
+    return trips, state, motion.samples()
 
 
 def same(one, two):
@@ -64,7 +64,7 @@ def test_where_nothing_touches_the_engine_changes_nothing(crowd, seed, spec, are
     with_engine = play(crowd, seed, spec, arena, engine=True, interval=0.1)
     without = play(crowd, seed, spec, arena, engine=False, interval=0.1)
     same(with_engine, without)
-    assert all(trip[13] == 0 for trip in with_engine[0])
+    assert all(trip.contacts == 0 for trip in with_engine[0])
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -74,8 +74,8 @@ def test_breakdowns_are_the_same_too(crowd, seed):
     with_engine, without = (
         play(crowd, seed, spec, None, engine=engine, **keys) for engine in (True, False)
     )
-    assert any(trip[1] == "broken down" for trip in without[0])
-    if not any(trip[13] for trip in with_engine[0]):
+    assert any(trip.outcome == "broken down" for trip in without[0])
+    if not any(trip.contacts for trip in with_engine[0]):
         same(with_engine, without)
 
 
@@ -87,7 +87,7 @@ def test_the_bridge_and_the_public_interface_agree(crowd, seed, traffic):
     openly = play(crowd, seed, SPECS[1], None, bridge=False, **keys)
     same(over_bridge, openly)
     if traffic == "free":
-        assert any(trip[13] for trip in over_bridge[0])
+        assert any(trip.contacts for trip in over_bridge[0])
 
 
 @pytest.mark.parametrize("engine", [True, False])

@@ -1,0 +1,103 @@
+"""Several observers as one: who is told what, and that nobody is forgotten at the end."""
+
+from __future__ import annotations
+
+import pytest
+
+import fleet
+from fleet.observer import Audience, Excerpt, Observer, Sent
+from fleet.radio import BrokenProtocol
+from protocols.messages import Transmission
+
+LINES = (Transmission("route-greedy", 0, 1), Transmission("call", 1, None))
+EXCERPT = Excerpt(7, 2.5, 3, LINES, ((1,), (0, 2)), (1, 4))
+
+
+class Hears(Observer):
+    def __init__(self):
+        self.lines = []
+
+    def sent(self, sent):
+        self.lines.append(sent)
+
+
+class Reads(Observer):
+    sample_interval = 0.1
+
+    def __init__(self):
+        self.excerpts = []
+
+    def transcribed(self, excerpt):
+        self.excerpts.append(excerpt)
+
+
+class Stumbles(Observer):
+    def __init__(self):
+        self.over = False
+
+    def closed(self):
+        self.over = True
+        raise OSError("no space left on device")
+
+
+def test_an_excerpt_is_told_whole_or_line_by_line():
+    hears, reads = Hears(), Reads()
+    Audience([hears, reads]).transcribed(EXCERPT)
+    assert reads.excerpts == [EXCERPT]
+    assert hears.lines == [
+        Sent(7, 2.5, 3, LINES[0], (1,), 1), Sent(8, 2.5, 3, LINES[1], (0, 2), 4)
+    ]  # fmt: skip
+
+
+def test_what_nobody_overrides_is_told_to_nobody(monkeypatch):
+    def fail(*_):
+        raise AssertionError("told of what it does not care for")
+
+    audience = Audience([Reads()])
+    for hook in ("awarded", "relinked", "sent"):
+        monkeypatch.setattr(Observer, hook, fail)
+    audience.awarded(None, None, 0.0)
+    audience.relinked(0.0)
+    audience.transcribed(EXCERPT)
+
+
+def test_intervals_are_the_shortest_asked_for():
+    slow = Reads()
+    slow.sample_interval = 2.0
+    audience = Audience([slow, Hears(), Reads()])
+    assert (audience.sample_interval, audience.link_interval) == (0.1, None)
+    assert Audience().sample_interval is None
+
+
+def test_only_those_who_listen_are_read_to():
+    assert Audience([Hears()]).listens
+    assert Audience([Reads()]).listens
+    assert not Audience([Stumbles()]).listens
+
+
+def test_all_are_closed_whatever_one_of_them_raises():
+    first, second = Stumbles(), Stumbles()
+    with pytest.raises(OSError, match="no space left"):
+        Audience([first, second]).closed()
+    assert first.over and second.over
+
+
+def test_what_was_said_is_read_out_even_if_the_protocol_breaks(monkeypatch):
+    def broken(view, event, source):
+        neighbour = next(iter(view[source].neighbours))
+        yield Transmission("route-greedy", source, neighbour)
+        raise ArithmeticError("as planned")
+
+    def far(view, event, source):
+        stranger = next(r for r in range(len(view)) if r not in view[source].neighbours)
+        yield Transmission("call", source, None)
+        yield Transmission("route-greedy", source, stranger)
+
+    for protocol, error, kinds in (
+        (broken, ArithmeticError, ["route-greedy"]), (far, BrokenProtocol, ["call"])
+    ):  # fmt: skip
+        hears = Hears()
+        monkeypatch.setattr("fleet.assembly.bind_protocol", lambda _, told=protocol: told)
+        with pytest.raises(error):
+            fleet.run(fleet.Scenario.of(motion="straight", rounds=3), [hears])
+        assert [sent.transmission.kind for sent in hears.lines] == kinds
