@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,16 +26,31 @@ def unit_disc(positions: NDArray[np.float64], radio_range: float) -> NDArray[np.
 
 def connected(count: int, pairs: NDArray[np.intp]) -> bool:
     """Whether the ``pairs`` (m, 2) join ``count`` robots into one network."""
-    return component_count(count, pairs) == 1
+    return not components(count, pairs).any()
 
 
 def component_count(count: int, pairs: NDArray[np.intp]) -> int:
     """How many networks ``count`` robots fall into."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    return int(np.count_nonzero(components(count, pairs) == np.arange(count)))
 
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    return int(connected_components(links, directed=False)[0])
+
+def components(count: int, pairs: NDArray[np.intp]) -> NDArray[np.intp]:
+    """For each of ``count`` robots the lowest of the component that the ``pairs`` (m, 2) put it in.
+
+    Everybody adopts the lowest label next door, then the label of that label, until all agree:
+    label propagation with pointer jumping, in a few rounds. A graph library takes longer to load.
+    """
+    u, v = pairs[:, 0], pairs[:, 1]
+    label = np.arange(count)
+    while True:
+        lowest = np.minimum(label[u], label[v])
+        after = label.copy()
+        np.minimum.at(after, u, lowest)
+        np.minimum.at(after, v, lowest)
+        after = after[after]
+        if np.array_equal(after, label):
+            return label
+        label = after
 
 
 def gabriel(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -77,18 +94,36 @@ def _blocked(
     w = np.arange(len(positions))[None, :]
     ux, uy = (positions[u, axis] - positions[w, axis] for axis in (0, 1))
     vx, vy = (positions[v, axis] - positions[w, axis] for axis in (0, 1))
-    uw, vw = ux * ux + uy * uy, vx * vx + vy * vy
-    at_u, at_v = uw == 0.0, vw == 0.0
-    dot = ux * vx + uy * vy
-    near_right = dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
-    between = (dot <= 0.0) | (near_right & (uw > BESIDE * vw) & (vw > BESIDE * uw))
+    apart = between(u, v, w, (ux, uy), (vx, vy))
     if lune:
         uv = ((positions[u] - positions[v]) ** 2).sum(axis=2)
-        between |= (uw < uv) & (vw < uv)
-    first = np.where(at_u & at_v, np.minimum(u, v), np.where(at_u, u, v))
-    between = np.where(at_u | at_v, w < first, between)
-    blocked[~blocked] = (between & (w != u) & (w != v)).any(axis=1)
+        apart |= (ux * ux + uy * uy < uv) & (vx * vx + vy * vy < uv)
+    blocked[~blocked] = apart.any(axis=1)
     return blocked
+
+
+def between(
+    u: NDArray[np.intp] | int,
+    v: NDArray[np.intp] | int,
+    w: NDArray[np.intp] | int,
+    to_u: Sequence[NDArray[np.float64]],
+    to_v: Sequence[NDArray[np.float64]],
+) -> NDArray[np.bool_]:
+    """Whether w keeps u and v apart in the Gabriel graph: it is in the closed disc over them.
+
+    ``to_u``, ``to_v``: x and y from w to u and to v [m]. All are broadcast. Of robots in one
+    place, the one with the lowest id stands for all.
+    """
+    (ux, uy), (vx, vy) = to_u, to_v
+    uw, vw = ux * ux + uy * uy, vx * vx + vy * vy
+    dot = ux * vx + uy * vy
+    near_right = dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
+    inside = (dot <= 0.0) | (near_right & (uw > BESIDE * vw) & (vw > BESIDE * uw))
+    at_u, at_v = uw == 0.0, vw == 0.0
+    if (at_u | at_v).any():
+        first = np.where(at_u & at_v, np.minimum(u, v), np.where(at_u, u, v))
+        inside = np.where(at_u | at_v, w < first, inside)
+    return np.asarray(inside & (w != u) & (w != v))
 
 
 def _clearly_blocked(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> NDArray[np.bool_]:

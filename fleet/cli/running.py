@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from fleet.cli.failing import bad_input_exits
 
 if TYPE_CHECKING:
     from fleet.observer import Observer
+    from fleet.replay.scribe import Scribe
     from fleet.scenario.model import Scenario
 
 
@@ -44,17 +46,23 @@ def command(
 
     SCENARIO is a TOML file; options win over it. Defaults, in brackets, are the paper's.
     """
-    from fleet.assembly import run
-    from fleet.cli.progress import RunProgress
-    from fleet.cli.summary import print_summary
-    from fleet.scenario.loading import load_scenario
-
     given = {k: v for k, v in {**options, "range": range_}.items() if v is not None}
-    with bad_input_exits():
+    with ExitStack() as stack:
+        stack.enter_context(bad_input_exits())
+        scribe = None
+        if rrd is not None or view:
+            from fleet.replay.scribe import Scribe
+
+            scribe = stack.enter_context(Scribe())  # it gets ready while we do
+        from fleet.assembly import run
+        from fleet.cli.progress import RunProgress
+        from fleet.cli.summary import print_summary
+        from fleet.scenario.loading import load_scenario
+
         loaded = load_scenario(scenario, given, settings)
         observers: list[Observer] = [RunProgress(loaded.rounds)] if sys.stderr.isatty() else []
-        if rrd is not None or view:
-            observers.append(recorded(loaded, rrd, live=view))
+        if scribe is not None:
+            observers.append(recorded(loaded, rrd, scribe, live=view))
         summary = run(loaded, observers)
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
@@ -64,7 +72,7 @@ def command(
         click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
 
 
-def recorded(scenario: Scenario, path: Path | None, *, live: bool) -> Observer:
+def recorded(scenario: Scenario, path: Path | None, scribe: Scribe, *, live: bool) -> Observer:
     """The recorder for a file, a live viewer, or both.
 
     Raises:
@@ -76,7 +84,7 @@ def recorded(scenario: Scenario, path: Path | None, *, live: bool) -> Observer:
     try:
         if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
-        return recorder(scenario, path, live=live)
+        return recorder(scenario, path, live=live, scribe=scribe)
     except OSError as error:
         raise bad("--rrd", f"{str(path)!r} cannot be written: {error.strerror}") from error
     except ValueError as error:

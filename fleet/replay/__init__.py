@@ -12,15 +12,22 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fleet.replay.recording import RerunRecorder
+    from fleet.replay.scribe import Scribe
     from fleet.scenario.model import Scenario
 
 __all__ = ["RerunRecorder", "recorder"]
 
 
-def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False) -> RerunRecorder:
+def recorder(
+    scenario: Scenario,
+    path: Path | None,
+    *,
+    live: bool | str = False,
+    scribe: Scribe | None = None,
+) -> RerunRecorder:
     """An observer that records a run of ``scenario`` into a file, for a live viewer, or both.
 
-    The file's folder is made if there is none.
+    The file's folder is made if there is none. A ``scribe`` started earlier is quicker ready.
 
     Raises:
         BadInput: there is nowhere to record to, the file cannot be written, or no viewer can
@@ -43,6 +50,7 @@ def recorder(scenario: Scenario, path: Path | None, *, live: bool | str = False)
             key=hashlib.sha256(named.encode()).hexdigest()[:16],
             properties={"version": __version__, **described},
             live=live,
+            scribe=scribe,
         )
     except OSError as error:
         raise bad("", f"cannot record to {path}: {error.strerror}") from error

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion import Trip
 from fleet.observer import Excerpt, Observer
-from fleet.replay.journal import RELOCATED, Entry, Scene, TripEnd, send
+from fleet.replay.journal import RELOCATED, Entry, Scene, TripEnd
+from fleet.replay.scribe import Scribe
 from protocols.messages import Award, Event, Move, RobotId
 
 if TYPE_CHECKING:
@@ -28,7 +24,6 @@ if TYPE_CHECKING:
 MANY_POSES = 50_000  # that are held back at most
 MANY_LINES = 50_000  # of the transcript that are held back at most
 FLAT = len(TripEnd._fields)  # of a trip's fields go into the recording: the first
-PIPE = 1 << 20  # [bytes] that the writer may lag behind before the run waits
 LIVE_PAUSE = 0.1  # [s] between looks of a live viewer
 
 
@@ -48,6 +43,7 @@ class RerunRecorder(Observer):
         flush_rounds: rounds between two times that the notes are handed on.
         sample_interval: simulated time between recorded poses of a moving robot [s].
         strict: data that Rerun would warn of ends the recording.
+        scribe: who draws; None: one is started.
 
     Raises:
         ValueError: there is nowhere to record to, or the file cannot be written.
@@ -63,6 +59,7 @@ class RerunRecorder(Observer):
         flush_rounds: int = 25,
         sample_interval: float = 0.05,
         strict: bool = False,
+        scribe: Scribe | None = None,
     ) -> None:
         if path is None and not live:
             raise ValueError("neither a file nor a viewer to record to; expected at least one")
@@ -88,9 +85,9 @@ class RerunRecorder(Observer):
             from fleet.replay.view import spawn_viewer
 
             live = spawn_viewer()
-        self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - until closed()
-        self._writer = _start_writer(self._complaints)
-        self._tell(
+        self.scribe = Scribe() if scribe is None else scribe
+        self.scribe.name = str(path) if path is not None else "for the viewer"
+        self.scribe.tell(
             "open", None if path is None else str(path.absolute()), live or None, key,
             _plain(properties), strict,
         )  # fmt: skip
@@ -118,7 +115,7 @@ class RerunRecorder(Observer):
             world=labels.world,
             seed=labels.seed,
         )
-        self._tell("scene", scene)
+        self.scribe.tell("scene", scene)
 
     def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
         """Note it."""
@@ -186,7 +183,7 @@ class RerunRecorder(Observer):
         self.flush()
         figures = summary.as_dict()
         del figures["wall_time"]
-        self._tell("summary", _plain(figures))
+        self.scribe.tell("summary", _plain(figures))
 
     def closed(self) -> None:
         """Hand over the last notes and wait until the file is complete.
@@ -194,19 +191,14 @@ class RerunRecorder(Observer):
         Raises:
             RuntimeError: the recording could not be written.
         """
-        if self._writer.poll() is None:
+        if self.scribe.alive:
             self.flush()
-        assert self._writer.stdin is not None
-        with suppress(BrokenPipeError):  # it has ended already; why is told below
-            self._writer.stdin.close()
-        with self._complaints:
-            if self._writer.wait() != 0:
-                raise self._failure()
+        self.scribe.finish()
 
     def flush(self) -> None:
         """Send the notes taken since the last time."""
         if self._entries:
-            self._tell("batch", self._entries)
+            self.scribe.tell("batch", self._entries)
         self._entries = []
         self._lines = self._poses = self._rounds = 0
         self._flushed = time.monotonic()
@@ -222,38 +214,6 @@ class RerunRecorder(Observer):
     def _due(self) -> bool:
         """Whether a live viewer waits for news."""
         return self._live and time.monotonic() - self._flushed > LIVE_PAUSE
-
-    def _tell(self, tag: str, *content: Any) -> None:
-        assert self._writer.stdin is not None
-        try:
-            send(self._writer.stdin, tag, *content)
-        except BrokenPipeError:
-            self._writer.wait()
-            raise self._failure() from None  # closed() is still to come
-
-    def _failure(self) -> RuntimeError:
-        """What the writer died of; all that it said is a note of the error."""
-        self._complaints.seek(0)
-        said = self._complaints.read().decode(errors="replace").strip()
-        target = self.path if self.path is not None else "for the viewer"
-        reason = said.splitlines()[-1] if said else f"exit code {self._writer.returncode}"
-        error = RuntimeError(f"the recording {target} broke off: {reason}")
-        error.add_note(said)
-        return error
-
-
-def _start_writer(complaints: IO[bytes]) -> subprocess.Popen[bytes]:
-    """The process that draws. It outlives an interrupted run for as long as it has work."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path or "." for path in sys.path)}
-    return subprocess.Popen(
-        [sys.executable, "-m", "fleet.replay.writer"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=complaints,
-        env=environment,
-        pipesize=PIPE,
-        start_new_session=True,  # Ctrl-C is for the run; the writer finishes the file
-    )
 
 
 def _check_writable(path: Path) -> None:

@@ -1,12 +1,14 @@
 """The process that draws a recording: it reads what happens from its input, and keeps the file.
 
-Run by :class:`fleet.replay.recording.RerunRecorder` as ``python -m fleet.replay.writer``.
+Run by :class:`fleet.replay.scribe.Scribe` as ``python -m fleet.replay.writer``.
 """
 
 from __future__ import annotations
 
 import gc
+import sys
 from collections.abc import Iterator, Sequence
+from importlib.abc import MetaPathFinder
 from queue import Queue
 from threading import Thread
 from typing import IO, Any
@@ -155,17 +157,33 @@ class Teller:
             page.send(self._stream)
 
 
+class NoPandas(MetaPathFinder):
+    """Keeps out pandas, which pyarrow would load to see whether what it converts is pandas'.
+
+    None of it is, and loading takes a quarter of a second.
+    """
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> None:
+        """Raise ImportError: pyarrow then does without."""
+        if name == "pandas":
+            raise ModuleNotFoundError("kept out", name=name)
+
+
 def main() -> None:
     """Draw what the input tells until it ends, however it ends."""
     # A file object of the reader's own: the interpreter must not wait for it when it ends.
     frames = _read_ahead(open(0, "rb", closefd=False))  # noqa: SIM115 - as long as we live
+    sys.meta_path.insert(0, NoPandas())
     from fleet.replay.blueprint import Stage, blueprint
     from fleet.replay.pages import pages
     from fleet.replay.scene import describe, draw_scene
 
     gc.freeze()  # what was imported is here to stay; looking through it takes time
     gc.set_threshold(20_000)
-    tag, path, live, key, properties, strict = next(frames)
+    opening = next(frames, None)
+    if opening is None:
+        return  # nothing came of the run
+    tag, path, live, key, properties, strict = opening
     assert tag == "open"
     if strict:
         import rerun

@@ -79,7 +79,8 @@ def test_all_are_closed_whatever_one_of_them_raises():
     first, second = Stumbles(), Stumbles()
     with pytest.raises(OSError, match="no space left"):
         Audience([first, second]).closed()
-    assert first.over and second.over
+    assert first.over
+    assert second.over
 
 
 def test_what_was_said_is_read_out_even_if_the_protocol_breaks(monkeypatch):

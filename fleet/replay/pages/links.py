@@ -18,7 +18,7 @@ from fleet.replay.pages.network import (
     Reach,
     Spell,
     any_spell,
-    components,
+    component_counts,
     disc_spell,
     gabriel_spell,
     in_all,
@@ -104,7 +104,7 @@ class Links(Page):
         if self._counts:
             when, routing, udg, on_air = zip(*self._counts, strict=True)
             numbers = np.array([udg, [len(codes) for codes in routing]], float).T
-            pieces = components(routing, on_air, self._story.n)
+            pieces = component_counts(routing, on_air, self._story.n)
             stream.rows(
                 LINK_COUNT,
                 when,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from protocols.links import RIGHT_ANGLE
+from protocols.links import between, components
 from protocols.topology import GraphName, edges
 
 FloatArray = NDArray[np.float64]
@@ -147,23 +147,14 @@ def touching(codes: Codes, n: int, robot: int) -> NDArray[np.bool_]:
     return np.asarray((u == robot) | (v == robot))
 
 
-def components(
+def component_counts(
     links: Sequence[Codes], on_air: Sequence[NDArray[np.bool_]], n: int
 ) -> NDArray[np.intp]:
     """How many connected components the robots ``on_air`` (n,) form, for each list of links."""
     shift = np.repeat(n * np.arange(len(links)), [len(codes) for codes in links])
-    u, v = np.divmod(np.concatenate([np.empty(0, np.intp), *links]), n) + shift[None, :]
-    label = np.arange(len(links) * n)
-    while True:
-        lowest = np.minimum(label[u], label[v])
-        after = label.copy()
-        np.minimum.at(after, u, lowest)
-        np.minimum.at(after, v, lowest)
-        after = after[after]
-        if (after == label).all():
-            break
-        label = after
-    roots = (label == np.arange(len(label))).reshape(-1, n) & np.array(on_air).reshape(-1, n)
+    ends = np.divmod(np.concatenate([np.empty(0, np.intp), *links]), n)
+    lowest = components(n * len(links), np.stack(ends, axis=1) + shift[:, None])
+    roots = (lowest == np.arange(len(lowest))).reshape(-1, n) & np.array(on_air).reshape(-1, n)
     return np.asarray(roots.sum(axis=1))
 
 
@@ -180,14 +171,6 @@ def _between(
     u: NDArray[np.intp] | int, v: NDArray[np.intp], w: NDArray[np.intp] | int,
     at_u: FloatArray, at_v: FloatArray, at_w: FloatArray,
 ) -> NDArray[np.bool_]:  # fmt: skip
-    """Whether w is in the closed disc over uv: the rule of :func:`protocols.links.gabriel`."""
+    """Whether w, at ``at_w`` (..., 2) [m], keeps u and v apart."""
     to_u, to_v = at_u - at_w, at_v - at_w
-    ux, uy, vx, vy = to_u[..., 0], to_u[..., 1], to_v[..., 0], to_v[..., 1]
-    uw, vw = ux * ux + uy * uy, vx * vx + vy * vy
-    dot = ux * vx + uy * vy
-    inside = (dot <= 0.0) | (dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw)
-    same_u, same_v = uw == 0.0, vw == 0.0
-    if (same_u | same_v).any():
-        first = np.where(same_u & same_v, np.minimum(u, v), np.where(same_u, u, v))
-        inside = np.where(same_u | same_v, w < first, inside)
-    return np.asarray(inside & (w != u) & (w != v))
+    return between(u, v, w, (to_u[..., 0], to_u[..., 1]), (to_v[..., 0], to_v[..., 1]))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fleet.replay.pages.network import (
     Reach,
     any_spell,
-    components,
+    component_counts,
     disc_spell,
     encode,
     gabriel_spell,
@@ -80,7 +80,7 @@ def test_without(some, others):
 
 
 @given(st.lists(fleets, min_size=1, max_size=4), st.data())
-def test_components(several, data):
+def test_component_counts(several, data):
     import networkx as nx
 
     n = max(map(len, several))
@@ -94,4 +94,4 @@ def test_components(several, data):
         graph = nx.Graph(links.tolist())
         graph.add_nodes_from(range(len(fleet)))
         expected.append(nx.number_connected_components(graph))
-    assert components(graphs, on_air, n).tolist() == expected
+    assert component_counts(graphs, on_air, n).tolist() == expected

@@ -137,7 +137,7 @@ def test_a_run_that_is_killed_leaves_what_it_had_handed_on(tmp_path):
 
         scenario = scenario_from({{"motion": "straight", "robots": 40, "range": 3.0, "seed": 4}})
         watching = RerunRecorder(Path({str(path)!r}), key="k", properties={{}}, flush_rounds=5)
-        print(watching._writer.pid, flush=True)
+        print(watching.scribe.process.pid, flush=True)
         run(scenario, [Dies(), watching])
     """
     killed = subprocess.Popen(
@@ -165,14 +165,14 @@ def is_running(pid):
 
 def test_a_recording_that_fails_says_so(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={}, flush_rounds=1)
-    watching._writer.kill()
+    watching.scribe.process.kill()
     with pytest.raises(RuntimeError, match=r"the recording .*run\.rrd broke off"):
         simulation([watching], rounds=10).run()
 
 
 def test_what_the_writer_died_of_is_told(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={})
-    watching._tell("batch", "nonsense")
+    watching.scribe.tell("batch", "nonsense")
     with pytest.raises(RuntimeError, match="AssertionError") as caught:
         watching.closed()
     assert "Traceback" in caught.value.__notes__[0]

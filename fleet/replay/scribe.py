@@ -1,0 +1,95 @@
+"""The process that draws a recording, from the side of the run.
+
+It takes half a second to load what it draws with. So it is started first of all, and gets ready
+while the run does.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from contextlib import suppress
+from types import TracebackType
+from typing import IO, Any
+
+from fleet.replay.journal import send
+
+PIPE = 1 << 20  # [bytes] that it may lag behind before the run waits
+
+
+class Scribe:
+    """A running :mod:`fleet.replay.writer`. It outlives an interrupted run while it has work.
+
+    As a context it is sent away at the end, unless it has been told anything.
+    """
+
+    def __init__(self) -> None:
+        self.name = "of the run"  # what it draws, for errors
+        self._told = False
+        self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - until the end
+        search = os.pathsep.join(path or "." for path in sys.path)
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "fleet.replay.writer"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=self._complaints,
+            env={**os.environ, "PYTHONPATH": search},
+            pipesize=PIPE,
+            start_new_session=True,  # Ctrl-C is for the run; the scribe finishes the file
+        )
+        assert self.process.stdin is not None
+        self._pipe = self.process.stdin
+
+    def __enter__(self) -> Scribe:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None,
+        where: TracebackType | None,
+    ) -> None:  # fmt: skip
+        if not self._told:
+            self.process.kill()
+            self.process.wait()
+            self._pipe.close()
+            self._complaints.close()
+
+    def tell(self, tag: str, *content: Any) -> None:
+        """Hand a frame over.
+
+        Raises:
+            RuntimeError: it has died.
+        """
+        self._told = True
+        try:
+            send(self._pipe, tag, *content)
+        except BrokenPipeError:
+            self.process.wait()
+            raise self._failure() from None  # finish() is still to come
+
+    @property
+    def alive(self) -> bool:
+        """Whether it takes notes."""
+        return self.process.poll() is None
+
+    def finish(self) -> None:
+        """That was all: wait until the recording is complete.
+
+        Raises:
+            RuntimeError: it could not be written.
+        """
+        with suppress(BrokenPipeError):  # it has ended already; why is told below
+            self._pipe.close()
+        with self._complaints:
+            if self.process.wait() != 0:
+                raise self._failure()
+
+    def _failure(self) -> RuntimeError:
+        """What it died of; all that it said is a note of the error."""
+        self._complaints.seek(0)
+        said = self._complaints.read().decode(errors="replace").strip()
+        reason = said.splitlines()[-1] if said else f"exit code {self.process.returncode}"
+        error = RuntimeError(f"the recording {self.name} broke off: {reason}")
+        error.add_note(said)
+        return error
