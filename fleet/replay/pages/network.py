@@ -9,7 +9,7 @@ A link (u, v), u < v, of n robots is the number u·n + v.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,9 @@ from protocols.topology import GraphName, edges
 
 FloatArray = NDArray[np.float64]
 Codes = NDArray[np.intp]  # (m,) ascending
+
+
+DOUBT = 1e-8  # share of a squared length that rounding cannot come to
 
 
 class Spell(NamedTuple):
@@ -80,17 +83,17 @@ class Reach(NamedTuple):
     robot: int
     n: int
     places: FloatArray  # (k, 2) [m]
+    squared: FloatArray  # (k, n) distances to everybody [m²]; NaN: off the air
     moment: NDArray[np.intp]  # (p,) ascending
     others: NDArray[np.intp]  # (p,) robots within range at that moment
 
     @classmethod
     def of(cls, positions: FloatArray, robot: int, places: FloatArray, radio_range: float) -> Reach:
         """Robots whose position is NaN are out of everybody's reach."""
-        away = positions[None, :, :] - places[:, None, :]
-        near = (away * away).sum(axis=2) <= radio_range * radio_range
-        near[:, robot] = False
-        moment, others = np.nonzero(near)
-        return cls(robot, len(positions), places, moment, others)
+        squared = _squared(places, positions)
+        squared[:, robot] = np.inf
+        moment, others = np.nonzero(squared <= radio_range * radio_range)
+        return cls(robot, len(positions), places, squared, moment, others)
 
     def rows(self, kept: NDArray[np.bool_]) -> list[Codes]:
         """The kept ones as links, moment by moment."""
@@ -118,27 +121,80 @@ def gabriel_spell(
     others = positions.copy()
     others[robot] = np.nan
     freed = without(disc, before)
-    u, v = np.divmod(freed, n)
-    freed = freed[_between(u, v, robot, positions[u], positions[v], positions[robot])]
+    freed = freed[_covering(freed, positions, robot, positions[robot, None])[0]]
     stay = np.union1d(before[~touching(before, n, robot)], freed[~_blocked(freed, others)])
 
-    kept = np.ones(len(reach.others), bool)
-    w = np.unique(reach.others)  # whoever comes between is within reach as well
-    for start in range(0, len(kept), 512):
-        part = slice(start, start + 512)
-        other = reach.others[part, None]
-        here = reach.places[reach.moment[part], None]
-        kept[part] = ~_between(robot, other, w, here, positions[other], others[w]).any(axis=1)
-    rows = reach.rows(kept)
-
-    u, v = np.divmod(stay, n)
-    crossed = _between(u, v, robot, positions[u], positions[v], reach.places[:, None])  # (k, m)
+    rows = reach.rows(~_cut_off(positions, robot, reach))
+    crossed = _covering(stay, positions, robot, reach.places)
     ever = crossed.any(axis=0)
-    open_ = [stay[ever][~shut] for shut in crossed[:, ever]]
+    sometimes, shut = stay[ever], crossed[:, ever]
+    moment, link = np.nonzero(~shut)
+    cuts = np.searchsorted(moment, np.arange(1, len(shut)))
+    open_ = np.split(sometimes[link], cuts)
     return Spell(
         stay[~ever],
         [np.sort(np.concatenate(both)) for both in zip(rows, open_, strict=True)],
     )
+
+
+def _cut_off(positions: FloatArray, robot: int, reach: Reach) -> NDArray[np.bool_]:
+    """Which of those within reach (p,) somebody keeps from the mover."""
+    w = np.unique(reach.others)  # whoever comes between is within reach as well
+    apart = _squared(positions[w], positions[w])
+    np.fill_diagonal(apart, np.inf)
+    near, row = reach.squared[:, w], np.searchsorted(w, reach.others)
+
+    def exactly(pair: NDArray[np.intp], third: NDArray[np.intp]) -> NDArray[np.bool_]:
+        other, here = reach.others[pair], reach.places[reach.moment[pair]]
+        return _between(robot, other, w[third], here, positions[other], positions[w[third]])
+
+    cut_off = np.zeros(len(row), bool)
+    for start in range(0, len(row), 512):
+        part = slice(start, start + 512)
+        moment = reach.moment[part]
+        cut_off[part] = _in_disc(
+            near[moment], apart[row[part]], near[moment, row[part]][:, None],
+            lambda pair, third, start=start: exactly(start + pair, third),
+        ).any(axis=1)  # fmt: skip
+    return cut_off
+
+
+def _covering(
+    codes: Codes, positions: FloatArray, robot: int, places: FloatArray
+) -> NDArray[np.bool_]:
+    """Over which links' discs (k, m) the mover is at each of its ``places`` (k, 2) [m]."""
+    u, v = np.divmod(codes, len(positions))
+    uv = ((positions[u] - positions[v]) ** 2).sum(axis=1)
+    away = _squared(places, positions)
+
+    def exactly(moment: NDArray[np.intp], link: NDArray[np.intp]) -> NDArray[np.bool_]:
+        a, b = u[link], v[link]
+        return _between(a, b, robot, positions[a], positions[b], places[moment])
+
+    return _in_disc(away[:, u], away[:, v], uv, exactly)
+
+
+def _in_disc(
+    uw: FloatArray, vw: FloatArray, uv: FloatArray,
+    exactly: Callable[..., NDArray[np.bool_]],
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Whether w lies in the closed disc over uv, by squared distances [m²]; where rounding leaves
+    that in doubt, ``exactly`` is asked, by indices.
+    """
+    excess = uw + vw - uv
+    doubtful = np.abs(excess) <= DOUBT * uv
+    inside = excess <= 0.0
+    if doubtful.any():
+        where = np.nonzero(doubtful)
+        inside[where] = exactly(*where)
+    return np.asarray(inside)
+
+
+def _squared(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Squared distances (k, m) [m²] from each of (k, 2) to each of (m, 2) [m]."""
+    dx = one[:, 0, None] - other[:, 0]
+    dy = one[:, 1, None] - other[:, 1]
+    return np.asarray(dx * dx + dy * dy)
 
 
 def touching(codes: Codes, n: int, robot: int) -> NDArray[np.bool_]:
@@ -160,11 +216,17 @@ def component_counts(
 
 def _blocked(codes: Codes, positions: FloatArray) -> NDArray[np.bool_]:
     """Which links have any robot in their disc."""
-    n = len(positions)
-    u, v = (end[:, None] for end in np.divmod(codes, n))
-    return np.asarray(
-        _between(u, v, np.arange(n), positions[u], positions[v], positions).any(axis=1)
-    )
+    u, v = np.divmod(codes, len(positions))
+    from_u, from_v = _squared(positions[u], positions), _squared(positions[v], positions)
+    link = np.arange(len(codes))
+    uv = from_u[link, v][:, None]
+    from_u[link, u] = from_v[link, v] = np.inf  # nobody is in its own way
+
+    def exactly(link: NDArray[np.intp], w: NDArray[np.intp]) -> NDArray[np.bool_]:
+        a, b = u[link], v[link]
+        return _between(a, b, w, positions[a], positions[b], positions[w])
+
+    return np.asarray(_in_disc(from_u, from_v, uv, exactly).any(axis=1))
 
 
 def _between(
