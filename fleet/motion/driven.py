@@ -205,12 +205,13 @@ class DrivenMotion:
 
     def _report(self) -> None:
         """Tell the robots where they are and what their batteries hold."""
-        x, y, heading, charge = self._movers.poses().T.tolist()
-        for robot, point, angle in zip(self._robots, zip(x, y, strict=True), heading, strict=True):
-            robot.position = point
-            robot.heading = angle
-        for battery, left in zip(self._batteries, charge, strict=True):
-            battery.charge = left
+        poses = self._movers.poses().tolist()
+        for robot, battery, (x, y, heading, charge) in zip(
+            self._robots, self._batteries, poses, strict=True
+        ):
+            robot.position = x, y
+            robot.heading = heading
+            battery.charge = charge
 
     def _look_after(self, over: Sequence[tuple[int, int]]) -> None:
         """See to the trips that are over, and to those that cannot go on as planned: places in
