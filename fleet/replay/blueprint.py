@@ -35,7 +35,7 @@ class Stage(NamedTuple):
 
 def blueprint(stage: Stage, timeline: str = scheme.SIM_TIME) -> rrb.Blueprint:
     """Two tabs, with ``timeline`` to scrub by."""
-    return _whole(rrb.Tabs(_replay(stage, timeline), _lifetime(stage), active_tab=0), timeline)
+    return _whole(rrb.Tabs(_replay(stage), _lifetime(stage), active_tab=0), timeline)
 
 
 def side_by_side(stages: Sequence[Stage], timeline: str = scheme.ROUND) -> rrb.Blueprint:
@@ -66,11 +66,11 @@ def _whole(content: rrb.Container, timeline: str) -> rrb.Blueprint:
     )
 
 
-def _replay(stage: Stage, timeline: str) -> rrb.Container:
+def _replay(stage: Stage) -> rrb.Container:
     guide = rrb.TextDocumentView(origin=stage(scheme.GUIDE), name="How to read")
     trip = _curves(stage(scheme.TRIP_ENERGY), "Trip [J]")
     return rrb.Horizontal(
-        rrb.Vertical(_world(stage), _phases(stage, timeline), row_shares=[85, 15]),
+        rrb.Vertical(_world(stage), _phases(stage), row_shares=[85, 15]),
         rrb.Vertical(
             rrb.Tabs(_card(stage), guide, active_tab=0),
             rrb.Tabs(_log(stage, decisions=True), _log(stage, decisions=False), active_tab=0),
@@ -156,8 +156,12 @@ def _with_rim(radius: float, order: float) -> list[rrb.Visualizer]:
     ]
 
 
-def _phases(stage: Stage, timeline: str) -> rrb.Container:
-    """The bar of phases around the cursor. Its width is in units of one timeline or another."""
+def _phases(stage: Stage) -> rrb.Container:
+    """The bar of phases around the cursor, so many messages wide or so many seconds.
+
+    In seconds, messages crowd into a line; in messages, a moment of simulated time is one phase,
+    the right one. So that comes first, whatever timeline is scrubbed by.
+    """
     around = rrb.TimeRangeBoundary.cursor_relative
     by_msg = rr.TimeRange(start=around(seq=-40), end=around(seq=20))
     by_time = rr.TimeRange(start=around(seconds=-20.0), end=around(seconds=10.0))
@@ -166,12 +170,9 @@ def _phases(stage: Stage, timeline: str) -> rrb.Container:
             rrb.StateTimelineView(
                 origin=stage(scheme.PHASE), name=name, time_view=rrb.TimeAxis(view_range=span)
             )
-            for name, span in (
-                ("Phases, by sim_time", by_time),
-                ("Phases, by msg or round", by_msg),
-            )
+            for name, span in (("Phases", by_msg), ("Phases, by sim_time", by_time))
         ),
-        active_tab=0 if timeline == scheme.SIM_TIME else 1,
+        active_tab=0,
     )
 
 
