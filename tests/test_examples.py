@@ -39,6 +39,14 @@ def test_a_protocol_and_a_metric_of_ones_own():
     assert len(set(lives)) == 3  # they are not all the same protocol
 
 
+def test_short_trips_drain_more_than_eq_1_says():
+    text = said_by("own_observer.py")
+    ratios = [float(r) for r in re.findall(r"m: (\d\.\d+) over", text)]
+    assert len(ratios) == 4
+    assert ratios == sorted(ratios, reverse=True)
+    assert 1.0 < ratios[-1] < 1.2 < 1.7 < ratios[0]
+
+
 def test_each_example_is_tested():
     tested = Path(__file__).read_text(encoding="utf-8")
     for example in EXAMPLES.glob("*.py"):
