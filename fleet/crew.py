@@ -162,10 +162,16 @@ class Crew:
             self.on_air.remove(robot.id)
             self._radio.silence(robot)
 
+    def show_plans(self, now: float) -> None:
+        """Tell observers where robots are going to drive."""
+        for robot, way in self._motion.plans():
+            self._audience.planned(robot, way, now)
+
     def _show(self, moved: Iterable[Robot], now: float) -> None:
         if self._true_links:
             for robot in moved:
                 if robot.alive:
                     self._fleet.topology.move(robot.id, robot.position)
+        self.show_plans(now)
         self._audience.moved(self._motion.samples())
         self._audience.relinked(now)

@@ -89,6 +89,12 @@ class Observer:
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """A robot sets off to an event."""
 
+    def planned(self, robot: RobotId, way: NDArray[np.float64], time: float) -> None:
+        """A robot that has departed knows its way, (k, 2) [m]; again if it must plan anew.
+
+        Only of bodies that drive around others, and if an observer asks for poses.
+        """
+
     def relocating(self, event: Event, move: Move, time: float) -> None:
         """A robot sets off to a place that is no event: an award of this event has sent it."""
 

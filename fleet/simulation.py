@@ -268,6 +268,7 @@ class Simulation:
         self._trips[robot.id] = task
         self._audience.departed(task.event, robot.id, self.now)
         self._motion.depart(robot, task.event.position)
+        self._crew.show_plans(self.now)
 
     def _relocate(self, move: Move, winner: Robot | None, task: Task) -> bool:
         """A robot goes to a place that is no event; it carries the task if nobody has won it."""
@@ -281,6 +282,7 @@ class Simulation:
         self._relocating[robot.id] = task, winner is None
         self._audience.relocating(task.event, move, self.now)
         self._motion.depart(robot, move.position)
+        self._crew.show_plans(self.now)
         return True
 
     def _relocated(self, robot: Robot, trip: Trip) -> None:

@@ -74,6 +74,12 @@ class Motion(Protocol):
     def halt(self, robot: Robot) -> None:
         """The robot's motor fails: it stops where it is, and its trip ends "broken down"."""
 
+    def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
+        """Who has planned a way since the last call, and its corners (k, 2) [m], in order.
+
+        Empty unless motion was made with a sample interval.
+        """
+
     def samples(self) -> NDArray[np.float64]:
         """Poses (k, 6) on the way since the last call, as :data:`SAMPLE_FIELDS`.
 

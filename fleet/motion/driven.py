@@ -22,7 +22,7 @@ from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
 from fleet.motion.law import fine_substeps, law_of
 from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
-from fleet.motion.planning import Planner
+from fleet.motion.planning import Plan, Planner, corners
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
@@ -84,6 +84,8 @@ class DrivenMotion:
         self._batteries: list[Battery] = []
         self._under_way: set[RobotId] = set()
         self._over: list[Trip] = []
+        self._watched = sample_interval is not None
+        self._plans: list[tuple[RobotId, NDArray[np.float64]]] = []
 
     @property
     def now(self) -> float:
@@ -153,6 +155,7 @@ class DrivenMotion:
             plan.pieces, self._step,
         )  # fmt: skip
         self._planner.changed()
+        self._show_plan(robot.id, plan)
         self._under_way.add(robot.id)
         self._robots.append(robot)
         self._batteries.append(robot.battery)
@@ -194,6 +197,11 @@ class DrivenMotion:
                 self._finish(ended)
                 self._tread()
                 return
+
+    def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
+        """Ways planned since the last call: at departures, and anew after a push or a breakdown."""
+        plans, self._plans = self._plans, []
+        return plans
 
     def samples(self) -> NDArray[np.float64]:
         """Poses under way since the last call, by time and robot."""
@@ -263,7 +271,12 @@ class DrivenMotion:
             return "arrived"
         self._movers.resume(slot, plan.pieces, self._step)
         self._planner.changed()
+        self._show_plan(robot.id, plan)
         return None
+
+    def _show_plan(self, robot: RobotId, plan: Plan) -> None:
+        if self._watched and plan.pieces is not None and len(plan.pieces):
+            self._plans.append((robot, corners(plan.pieces)))
 
     def _stand(self, voyage: _Voyage) -> None:
         """The robot stands where it is, and rests there for all that others know."""

@@ -6,7 +6,7 @@ Importing this module loads numba.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, nan
+from math import ceil, cos, isfinite, nan, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,9 +16,11 @@ from fleet.motion.floor import lay_out
 from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.plan import NO_PATH, move_in, plan
-from fleet.motion.kernels.records import NOBODY, PIECE
+from fleet.motion.kernels.records import LINE, NOBODY, PIECE
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
+
+CHORD = 0.2  # [rad] of an arc that a chord spans, at most
 
 
 class Plan(NamedTuple):
@@ -27,6 +29,22 @@ class Plan(NamedTuple):
     pieces: NDArray[Any] | None  # (k,) PIECE; None: no path
     length: float  # [m]
     goal: Point  # where it ends: the site, or as near as there is room [m]
+
+
+def corners(pieces: NDArray[Any]) -> NDArray[np.float64]:
+    """A way as a polyline (k, 2) [m], arcs by chords."""
+    points: list[Point] = []
+    for piece in pieces:
+        x, y, length = piece.x, piece.y, piece.length
+        if piece.kind == LINE:
+            way = [(x, y), (x + length * piece.cos, y + length * piece.sin)]
+        else:
+            turn = piece.sense * length / piece.radius
+            chords = max(1, ceil(abs(turn) / CHORD))
+            angles = [piece.angle + turn * k / chords for k in range(chords + 1)]
+            way = [(x + piece.radius * cos(a), y + piece.radius * sin(a)) for a in angles]
+        points += way[1:] if points else way
+    return np.array(points).reshape(-1, 2)
 
 
 class Planner:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS, Outcome, Trip
 from fleet.robot import Robot, RobotSpec
-from protocols.messages import Point
+from protocols.messages import Point, RobotId
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +140,10 @@ class StraightMotion:
             leg, charge=charge, energy=charge, outcome="battery empty", end=_between(leg, share),
             ends=leg.departed + share * (leg.ends - leg.departed),
         )  # fmt: skip
+
+    def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
+        """None: the line to the site is all there is."""
+        return ()
 
     def samples(self) -> NDArray[np.float64]:
         """Poses under way since the last call, by time."""

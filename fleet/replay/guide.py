@@ -41,7 +41,8 @@ The timeline is chosen beside the play button.
 | yellow dashes | the straight line: Eq. (1) charges {scene.per_metre:.1f} J/m for it |
 | lavender dashes | likewise to a place that is no event, where a robot is sent to carry \
 the event on, or to keep the fleet connected |
-| yellow line | where a robot drove |
+| thin yellow line | the way that it has planned around others, where it bends |
+| thick yellow line | where a robot drove |
 | hatched | the hole: no robot starts there; events happen there all the same |
 | solid block | an obstacle: robots drive around it, the radio passes |
 

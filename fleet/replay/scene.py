@@ -66,6 +66,7 @@ def draw_scene(stream: Stream, story: Story) -> None:
         _style_lines(stream, f"{scheme.ROUTING}/{part}", 1.4 * line, scheme.ROUTING_COLOUR, 2.0)
     _style_lines(stream, scheme.STRAIGHT, 1.6 * line, scheme.WINNER_COLOUR, 9.0)
     _style_lines(stream, scheme.RELOCATION, 1.6 * line, scheme.RELOCATION_COLOUR, 9.0)
+    _style_lines(stream, scheme.PLANNED, 0.9 * line, scheme.PLANNED_COLOUR, 9.2)
     _style_lines(stream, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
     _style_lines(stream, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
     for order, kind in enumerate(scheme.KIND_COLOURS):

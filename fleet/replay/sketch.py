@@ -39,14 +39,16 @@ THEMES = {
 
 
 LEFT, ACROSS = 0.085, 0.76  # the floor, in shares of a figure's width
-BELOW, ABOVE = 0.78, 0.3  # the floor, for axis and legend, and for the caption [in]
-LINES: tuple[tuple[str, str, int, Literal["-", "--"]], ...] = (  # where and what, in the legend
-    (scheme.DRIVEN, "way driven", scheme.WINNER_COLOUR, "-"),
-    (scheme.STRAIGHT, "straight, Eq. (1)", scheme.WINNER_COLOUR, "--"),
-    (scheme.RELOCATION, "relocation", scheme.RELOCATION_COLOUR, "--"),
-    (scheme.ROUTING, "link", scheme.ROUTING_COLOUR, "-"),
-    (scheme.DEAD, "off the air", scheme.CROSS_COLOUR, "-"),
+BELOW, ABOVE = 0.9, 0.3  # the floor, for axis and legend, and for the caption [in]
+LINES: tuple[tuple[str, str, int, Literal["-", "--"], float], ...] = (  # of the legend
+    (scheme.DRIVEN, "way driven", scheme.WINNER_COLOUR, "-", 2.2),
+    (scheme.PLANNED, "way planned", scheme.PLANNED_COLOUR, "-", 0.8),
+    (scheme.STRAIGHT, "straight, Eq. (1)", scheme.WINNER_COLOUR, "--", 1.4),
+    (scheme.RELOCATION, "relocation", scheme.RELOCATION_COLOUR, "--", 1.4),
+    (scheme.ROUTING, "link", scheme.ROUTING_COLOUR, "-", 1.4),
+    (scheme.DEAD, "off the air", scheme.CROSS_COLOUR, "-", 1.4),
 )
+COLUMNS = 4  # of the legend
 
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, bottom, width and height, in shares of a figure."""
@@ -92,6 +94,7 @@ class Sketch:
         self._event()
         self._lines(scheme.STRAIGHT, 0.9, scheme.WINNER_COLOUR, outlined=True)
         self._lines(scheme.RELOCATION, 0.9, scheme.RELOCATION_COLOUR, outlined=True)
+        self._lines(scheme.PLANNED, 0.6, scheme.PLANNED_COLOUR, outlined=True)
         self._lines(scheme.DRIVEN, 1.8, scheme.WINNER_COLOUR, outlined=True)
         kinds = self._arrows()
         self._discs(scheme.RINGS, 1.75, 4.0, rim=1.35)
@@ -276,11 +279,11 @@ class Sketch:
             for kind in kinds
         ]
         words = [scheme.KIND_LABELS.get(kind, kind) for kind in kinds]
-        for path, word, colour, style in LINES:
+        for path, word, colour, style, width in LINES:
             if any(
                 len(self._get(part, "LineStrips2D:strips")) for part in (path, f"{path}/lasting")
             ):
-                handles.append(Line2D([], [], color=rgb(colour), linestyle=style, lw=1.4))
+                handles.append(Line2D([], [], color=rgb(colour), linestyle=style, lw=width))
                 words.append(word)
         if len(self._points(scheme.EVENT, "Points2D:positions")):
             ring = Line2D([], [], marker="o", markersize=6, markerfacecolor="none", linewidth=0.0)
@@ -288,7 +291,7 @@ class Sketch:
             handles.append(ring)
             words.append("event, search radius" if self._search > 0.0 else "event")
         self._axes.legend(
-            handles, words, ncols=ceil(len(words) / 2), loc="upper center",
+            handles, words, ncols=min(COLUMNS, ceil(len(words) / 2)), loc="upper center",
             bbox_to_anchor=(0.5, -0.34 / self._axes.bbox.height * self._axes.figure.dpi),
             bbox_transform=self._axes.transAxes, frameon=False, fontsize=6.5,
             labelcolor=self._theme.ink, handlelength=1.6, columnspacing=1.4,

@@ -117,6 +117,9 @@ class Page:
     def departed(self, at: Moment, robot: RobotId) -> None:
         """A robot sets off; the story knows where to, and whether that is an event."""
 
+    def planned(self, at: Moment, robot: RobotId, way: NDArray[np.float64]) -> None:
+        """A robot that has set off is going to drive along ``way`` (k, 2) [m]."""
+
     def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
         """Poses (k, 6) of those under way, up to now; the moment's time is that of the last."""
 

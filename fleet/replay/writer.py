@@ -125,6 +125,12 @@ class Teller:
         for page in self._pages:
             page.departed(at, robot)
 
+    def _planned(self, time: float, robot: RobotId, way: bytes) -> None:
+        self._story.now = time
+        at = self._moment(self._number)
+        for page in self._pages:
+            page.planned(at, robot, np.frombuffer(way).reshape(-1, 2))
+
     def _moved(self, rows: bytes) -> None:
         samples = np.frombuffer(rows).reshape(-1, len(SAMPLE_FIELDS))
         self._poses += len(samples)

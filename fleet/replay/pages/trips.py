@@ -1,4 +1,6 @@
-"""Where a robot was sent, along the straight line that Eq. (1) charges, and where it drove."""
+"""Where a robot was sent, along the straight line that Eq. (1) charges, the way that it planned,
+and where it drove.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, column, segments, strips
 from fleet.replay.journal import TripEnd
-from fleet.replay.scheme import DRIVEN, RELOCATION, STRAIGHT
+from fleet.replay.scheme import DRIVEN, PLANNED, RELOCATION, STRAIGHT
 from fleet.replay.story import Page, Story
 from fleet.replay.stream import Stream
 from protocols.messages import RobotId
@@ -27,12 +29,14 @@ class Trips(Page):
     def __init__(self) -> None:
         self._dashes: dict[RobotId, FloatArray] = {}  # (d, 2, 2) [m]
         self._driven: dict[RobotId, FloatArray] = {}  # (c, 2) [m]
+        self._planned: dict[RobotId, FloatArray] = {}  # (c, 2) [m] of those that bend
         self._ended: set[RobotId] = set()
         self._errands: set[RobotId] = set()  # those whose dashes lead to no event
         self._elsewhere = False  # whether any such are drawn
         self._straight_rows: list[tuple[Moment, list[FloatArray]]] = []
         self._errand_rows: list[tuple[Moment, list[FloatArray]]] = []
         self._driven_rows: list[tuple[Moment, list[FloatArray]]] = []
+        self._planned_rows: list[tuple[Moment, list[FloatArray]]] = []
 
     def started(self, story: Story) -> None:
         """Nobody is under way."""
@@ -42,6 +46,9 @@ class Trips(Page):
         """Trips that have ended are history."""
         for robot in self._ended:
             del self._dashes[robot], self._driven[robot]
+        if self._ended & self._planned.keys():
+            self._planned = {r: way for r, way in self._planned.items() if r not in self._ended}
+            self._draw_planned(at)
         if self._ended:
             self._draw_straight(at)
             self._errands -= self._ended
@@ -52,11 +59,18 @@ class Trips(Page):
         """The straight line is known."""
         trip = self._story.under_way[robot]
         self._ended.discard(robot)
+        if self._planned.pop(robot, None) is not None:
+            self._draw_planned(at)
         (self._errands.add if trip.errand else self._errands.discard)(robot)
         self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._story.mark / 0.1)
         self._driven[robot] = np.array([trip.origin])
         self._draw_straight(at)
         self._draw_driven(at)
+
+    def planned(self, at: Moment, robot: RobotId, way: FloatArray) -> None:
+        """The way is known."""
+        self._planned[robot] = way
+        self._draw_planned(at)
 
     def moved(self, at: Moment, samples: FloatArray) -> None:
         """The driven path grows."""
@@ -94,22 +108,23 @@ class Trips(Page):
                     [sum(map(len, row)) for row in rows],
                 ),
             )
-        if self._driven_rows:
-            when, rows = zip(*self._driven_rows, strict=True)
-            trails = [trail for row in rows for trail in row]
+        for path, drawn in ((PLANNED, self._planned_rows), (DRIVEN, self._driven_rows)):
+            if not drawn:
+                continue
+            when, rows = zip(*drawn, strict=True)
+            ways = [way for row in rows for way in row]
+            points = np.concatenate([np.empty((0, 2)), *ways])
             stream.rows(
-                DRIVEN,
+                path,
                 when,
                 column(
                     rr.LineStrips2D.descriptor_strips(),
-                    strips(
-                        np.concatenate([np.empty((0, 2)), *trails]),
-                        [len(trail) for trail in trails],
-                    ),
+                    strips(points, [len(way) for way in ways]),
                     [len(row) for row in rows],
                 ),
             )
-        self._straight_rows, self._errand_rows, self._driven_rows = [], [], []
+        self._straight_rows, self._errand_rows = [], []
+        self._planned_rows, self._driven_rows = [], []
 
     def _draw_straight(self, at: Moment) -> None:
         to_events = [d for robot, d in self._dashes.items() if robot not in self._errands]
@@ -118,6 +133,9 @@ class Trips(Page):
         if elsewhere or self._elsewhere:
             self._errand_rows.append((at, elsewhere))
         self._elsewhere = bool(elsewhere)
+
+    def _draw_planned(self, at: Moment) -> None:
+        self._planned_rows.append((at, list(self._planned.values())))
 
     def _draw_driven(self, at: Moment) -> None:
         self._driven_rows.append((at, list(self._driven.values())))

@@ -198,11 +198,34 @@ def test_samples_are_rows_of_poses_on_the_way(driving):
     assert len(motion.samples()) == 0
 
 
+def test_plans_are_told_at_departure_and_after_a_breakdown(driving):
+    places = [(2.0, 5.0), (3.0, 1.0), (5.0, 3.0)]
+    motion, (one, two, breaks) = driving(places, SPEC, BLOCK, interval=0.05)
+    motion.depart(one, (8.0, 5.0))
+    ((robot, way),) = motion.plans()
+    assert robot == 0
+    assert (tuple(way[0]), tuple(way[-1])) == (one.position, pytest.approx((8.0, 5.0)))
+    assert dist(*way[[0, -1]]) < np.hypot(*np.diff(way, axis=0).T).sum()
+    (trip,) = motion.advance(inf)
+    assert np.hypot(*np.diff(way, axis=0).T).sum() == pytest.approx(trip.planned, rel=2e-3)
+    assert motion.plans() == []
+
+    motion.depart(breaks, (5.0, 1.0))
+    motion.advance(motion.now + 1.5)
+    motion.depart(two, (8.0, 1.0))
+    motion.plans()
+    motion.halt(breaks)  # somewhere on the other's way
+    motion.advance(inf)
+    again = [way for robot, way in motion.plans() if robot == two.id]
+    assert all(dist(way[-1], (8.0, 1.0)) < 1e-6 for way in again)
+
+
 def test_without_an_interval_there_are_no_samples(driving):
     motion, (robot,) = driving([(1.0, 1.0)], SPEC)
     motion.depart(robot, (3.0, 1.0))
     motion.advance(inf)
     assert motion.samples().shape == (0, 6)
+    assert motion.plans() == []
 
 
 def test_many_samples_fit(driving):

@@ -233,3 +233,25 @@ def test_bodies_driven_by_the_engine(tmp_path):
         assert dist(way[-1], trip.end) < 0.3
     foreseen, drained = run.recording.rows(scheme.TOTAL_ENERGY, "Scalars:scalars").values[-1]
     assert drained > 1.05 * foreseen
+
+
+def test_the_planned_way_is_drawn_where_it_bends(tmp_path):
+    run = record(tmp_path / "run.rrd", motion="path", world="warehouse", rounds=20, seed=3)
+    bent = straight = 0
+    for event, trip, _ in run.witness.trips:
+        under_way = 0.5 * (trip.departed + trip.ended)
+        strips = "LineStrips2D:strips"
+        ways = run.recording.at(scheme.PLANNED, strips, scheme.SIM_TIME, under_way)
+        ways = () if ways is None else ways
+        length = sum(np.hypot(*np.diff(way, axis=0).T).sum() for way in ways)
+        if trip.planned > 1.001 * dist(trip.origin, trip.site):
+            (way,) = ways
+            assert way[0].tolist() == pytest.approx(trip.origin, abs=1e-5)
+            assert way[-1].tolist() == pytest.approx(event.position, abs=1e-5)
+            assert length == pytest.approx(trip.planned, rel=2e-3)
+            bent += 1
+        else:
+            assert len(ways) == 0 or length == pytest.approx(trip.planned, rel=2e-3)
+            straight += 1
+    assert bent > 3
+    assert straight > 3
