@@ -64,14 +64,15 @@ def written(value: Any, style: str) -> str:
         if not isfinite(value.value):
             return "–"
         if not isfinite(value.low):
-            return signed(format(value.value, style))
-        low, high = format(value.low, style), format(value.high, style)
-        return signed(f"{format(value.value, style)} [{low}, {high}]")
+            return signed(value.value, style)
+        return "{} [{}, {}]".format(*(signed(part, style) for part in value))
     if isinstance(value, float):
-        return signed(format(value, style)) if isfinite(value) else "–"
+        return signed(value, style) if isfinite(value) else "–"
     return format(value, style if isinstance(value, int) else "")
 
 
-def signed(text: str) -> str:
-    """With minus signs for hyphens."""
-    return text.replace("-", "−")
+def signed(value: float, style: str) -> str:
+    """A number with a minus sign for a hyphen, and none before nothing."""
+    text = format(value, style)
+    nothing = not any(digit in text for digit in "123456789")
+    return text.replace("-", "" if nothing else "−")

@@ -83,30 +83,50 @@ def findings(single: Trips, streams: Trips, lived: Trips, listed: Sequence[Life]
     )
 
 
-def paragraph(found: Findings) -> str:
+def verdict(found: Findings) -> str:
     """When the linear assumption may be used and when not, from what was measured."""
-    asked = f"the {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, that"
-    protocols = ", ".join(f"{name} {_more(r)}" for name, r in found.by_protocol.items())
-    worlds = ", ".join(f"{name} {_more(r)}" for name, r in found.by_world.items())
     fits = abs(found.asked.value - 1.0) <= TOLERABLE
     return (
         f"Eq. (1), energy linear in the straight distance, may be used for long trips over an open"
         f" floor: {_usable(found.within_10, 'a tenth', found.longest)},"
         f" and {_usable(found.within_5, 'a twentieth', found.longest)}."
-        f" It may {'also' if fits else 'not'} be used for what the protocols ask for: {asked}"
-        f" whole lifetimes were made of drained {_more(found.asked.value)} than it says"
-        f" ({protocols}). Single trips of {LONG:g} m and more among obstacles drained: {worlds}."
-        f" What it leaves out comes with every launch, not with every metre: turning, speeding up"
-        f" and braking cost {found.launch.value:.2f} J"
+        f" It may {'also' if fits else 'not'} be used for what the protocols ask for: the"
+        f" {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, that whole"
+        f" lifetimes were made of drained {_more(found.asked.value)} than it says. Where it may"
+        f" not, Eq. (1) on the planned path and {found.launch.value:.1f} J a launch come nearer:"
+        f" R² = {found.corrected.r2:.4f} on tasks that this was not fitted on."
+    ).replace("-", "−")
+
+
+def details(found: Findings) -> list[str]:
+    """What else there is to know, a sentence or two each."""
+    left_out = (
+        f"What Eq. (1) leaves out comes with every launch, not with every metre: turning, speeding"
+        f" up and braking cost {found.launch.value:.2f} J"
         f" [{found.launch.low:.2f}, {found.launch.high:.2f}], however short the way"
         f" ({found.launch_formula:.2f} J by the drive law)."
-        f" With this much added, and the planned path for the straight line, R² ="
-        f" {found.corrected.r2:.4f} and the RMSE {found.corrected.rmse:.2f} J on tasks that it was"
-        f" not fitted on, {found.asked_corrected.r2:.4f} and {found.asked_corrected.rmse:.2f} J on"
-        f" the protocols’ trips; as it stands {found.eq1.r2:.3f} and {found.eq1.rmse:.2f} J,"
-        f" {found.asked_eq1.r2:.3f} and {found.asked_eq1.rmse:.2f} J."
-        f"{_overrated(found.overrated)}"
-    ).replace("-", "−")
+    )
+    corrected = (
+        f"With a launch added, and the planned path for the straight line, it is off by"
+        f" {found.corrected.rmse:.2f} J (RMSE; R² {found.corrected.r2:.4f}) on tasks that it was"
+        f" not fitted on, and by {found.asked_corrected.rmse:.2f} J"
+        f" ({found.asked_corrected.r2:.4f}) on the protocols’ trips. As it stands it is off by"
+        f" {found.eq1.rmse:.2f} J ({found.eq1.r2:.3f}) and {found.asked_eq1.rmse:.2f} J"
+        f" ({found.asked_eq1.r2:.3f})."
+    )
+    said = [
+        f"By protocol, the trips of lifetimes drained: {_listed(found.by_protocol)}.",
+        f"Among obstacles, trips of {LONG:g} m and more drained: {_listed(found.by_world)}.",
+        left_out,
+        corrected,
+    ]
+    if found.overrated:
+        ratios = ", ".join(f"{name} {ratio:.2f}" for name, ratio in found.overrated.items())
+        said.append(
+            f"Networks simulated with Eq. (1) alone live longer than those that drive: {ratios}"
+            f" times."
+        )
+    return [sentence.replace("-", "−") for sentence in said]
 
 
 def on_bids(listed: Sequence[Life]) -> str:
@@ -170,13 +190,8 @@ def _usable(distance: float, tolerance: str, longest: float) -> str:
     return f"from {distance:g} m on it is within {tolerance} of what is drained"
 
 
-def _overrated(ratios: Mapping[str, float]) -> str:
-    if not ratios:
-        return ""
-    said = ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items())
-    return (
-        f" Networks simulated with Eq. (1) alone live longer than those that drive: {said} times."
-    )
+def _listed(ratios: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {_more(ratio)}" for name, ratio in ratios.items())
 
 
 def _ratios(trips: Mapping[str, Trips]) -> dict[str, float]:

@@ -67,13 +67,11 @@ def _root_turn(trips: Trips) -> FloatArray:
 LAUNCH = ("a launch", "J", _once)
 
 EQ1 = Model("Eq. (1)", _eq1)
-LINE = Model("any line in the straight distance", _nothing, (LAUNCH, ("a metre", "J/m", _straight)))
+LINE = Model("any line in the straight distance", _nothing, (LAUNCH, ("a metre", "J", _straight)))
 STRAIGHT_LAUNCH = Model("Eq. (1) + launch", _eq1, (LAUNCH,))
 PLANNED = Model("Eq. (1) on the planned path", _eq1_planned)
 CORRECTED = Model("Eq. (1) on the planned path + launch", _eq1_planned, (LAUNCH,))
-TURNED = Model(
-    "the same + turn", _eq1_planned, (LAUNCH, ("a turn, by its root", "J/√rad", _root_turn))
-)
+TURNED = Model("the same + turn", _eq1_planned, (LAUNCH, ("a √rad turned", "J", _root_turn)))
 MODELS = (EQ1, LINE, STRAIGHT_LAUNCH, PLANNED, CORRECTED, TURNED)
 
 

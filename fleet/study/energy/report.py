@@ -12,7 +12,7 @@ from fleet.study.energy import fleet_exhibits, trip_exhibits
 from fleet.study.energy.accuracy import accuracy
 from fleet.study.energy.campaign import ENGINE, NO_INERTIA, PAPER
 from fleet.study.energy.exhibits import Exhibit
-from fleet.study.energy.findings import findings, on_bids, on_closure, paragraph
+from fleet.study.energy.findings import details, findings, on_bids, on_closure, verdict
 from fleet.study.energy.lives import Life
 from fleet.study.energy.models import LINE, fit
 from fleet.study.energy.trips import Trips
@@ -64,7 +64,8 @@ def write_report(
         lstrip_blocks=True,
     ).get_template("report.html.j2")  # fmt: skip
     page = template.render(
-        lead=paragraph(found),
+        lead=verdict(found),
+        details=details(found),
         exhibits=[(exhibit, figures[exhibit.name]) for exhibit in shown],
         said=said,
         titles=TITLES,

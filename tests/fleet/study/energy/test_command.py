@@ -49,7 +49,7 @@ def test_a_tiny_study_is_run_and_reported(tmp_path, tiny):
     lead = lead_of(out)
     assert "may be used for long trips over an open floor: " in lead
     assert "It may not be used for what the protocols ask for" in lead
-    assert re.search(r"cost [56]\.\d\d\sJ \[", lead)
+    assert re.search(r"and [56]\.\d\sJ a launch come nearer", lead)
     page = (out / "report.html").read_text("utf-8")
     assert "the parts add up to what the batteries lost" in page
     assert "the same energy to the bit" in page
