@@ -148,8 +148,11 @@ def _tell(told: Sequence[Callable[..., None]], *what: Any) -> None:
 
 
 def _overrides(observer: Observer, *hooks: str) -> bool:
-    return any(getattr(type(observer), hook) is not getattr(Observer, hook) for hook in hooks)
+    """Whether it has any of the hooks of its own, by its class or as an attribute."""
+    own = (getattr(observer, hook) for hook in hooks)
+    idle = [getattr(Observer, hook) for hook in hooks]
+    return any(getattr(hook, "__func__", hook) not in idle for hook in own)
 
 
 def _shortest(intervals: Sequence[float | None]) -> float | None:
-    return min((interval for interval in intervals if interval is not None), default=None)
+    return min(filter(None, intervals), default=None)

@@ -17,7 +17,8 @@ Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
 class Trip(NamedTuple):
     """One robot's drive to one site, from departure to the end, whatever the end.
 
-    The last five split up ``energy``; they add up to it. What a motion has no notion of is 0.
+    The last five say what for. Each comes from an account of its own, so that they add up to
+    ``energy`` only if nothing is forgotten. What a motion has no notion of is 0.
     """
 
     robot: RobotId

@@ -245,7 +245,7 @@ class DrivenMotion:
     def _plan_anew(self, voyages: Sequence[_Voyage]) -> dict[int, Outcome]:
         """Let robots go on to their sites by other paths; those that cannot, by place."""
         ended: dict[int, Outcome] = {}
-        for voyage in voyages:
+        for voyage in {voyage.slot: voyage for voyage in voyages}.values():
             outcome = self._try_anew(voyage)
             if outcome is not None:
                 self._stand(voyage)
@@ -347,7 +347,6 @@ class DrivenMotion:
     def _trip(self, voyage: _Voyage, outcome: Outcome, account: Account) -> Trip:
         dt = self.options.dt
         smooth = account.path - account.jostled
-        driving = account.spent - account.spent_turning - account.spent_waiting
         return Trip(
             voyage.robot.id,
             outcome,
@@ -364,7 +363,7 @@ class DrivenMotion:
             account.steps,
             account.contacts,
             energy_path=self._eq1 * account.path,
-            energy_ramps=driving - account.spent_adrift - self._eq1 * smooth,
+            energy_ramps=account.spent_driving - self._eq1 * smooth,
             energy_pivots=account.spent_turning,
             energy_waiting=account.spent_waiting,
             energy_contact=account.spent_adrift - self._eq1 * account.jostled,

@@ -37,8 +37,9 @@ class Account(NamedTuple):
     waited: int  # [steps]
     steps: int
     contacts: int
-    spent: float  # [J], of it:
+    spent: float  # [J], and by what for, each kept by itself:
     spent_turning: float
+    spent_driving: float
     spent_waiting: float
     spent_adrift: float
 

@@ -226,8 +226,12 @@ class RerunRecorder(Observer):
 
 
 def _check_writable(path: Path) -> None:
+    """Raises ValueError if it is not. What is there stays, until there is a run to record."""
+    new = not path.exists()
     try:
-        path.open("wb").close()
+        path.open("ab").close()
+        if new:
+            path.unlink()
     except OSError as error:
         raise ValueError(f"cannot record to {path}: {error.strerror}") from error
 

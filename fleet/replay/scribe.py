@@ -22,12 +22,12 @@ PIPE = 1 << 20  # [bytes] that it may lag behind before the run waits
 class Scribe:
     """A running :mod:`fleet.replay.writer`. It outlives an interrupted run while it has work.
 
-    As a context it is sent away at the end, unless it has been told anything.
+    As a context it is sent away at the end, if it has not finished: no run has begun.
     """
 
     def __init__(self) -> None:
         self.name = "of the run"  # what it draws, for errors
-        self._told = False
+        self._finished = False
         self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - until the end
         search = os.pathsep.join(path or "." for path in sys.path)
         self.process = subprocess.Popen(
@@ -49,7 +49,7 @@ class Scribe:
         self, kind: type[BaseException] | None, error: BaseException | None,
         where: TracebackType | None,
     ) -> None:  # fmt: skip
-        if not self._told:
+        if not self._finished:
             self.process.kill()
             self.process.wait()
             self._pipe.close()
@@ -61,7 +61,6 @@ class Scribe:
         Raises:
             RuntimeError: it has died.
         """
-        self._told = True
         try:
             send(self._pipe, tag, *content)
         except BrokenPipeError:
@@ -79,6 +78,7 @@ class Scribe:
         Raises:
             RuntimeError: it could not be written.
         """
+        self._finished = True
         with suppress(BrokenPipeError):  # it has ended already; why is told below
             self._pipe.close()
         with self._complaints:

@@ -61,6 +61,23 @@ def test_what_nobody_overrides_is_told_to_nobody(monkeypatch):
     audience.transcribed(EXCERPT)
 
 
+def test_hooks_may_be_set_on_an_observer_or_be_those_of_another():
+    class Wrapper:
+        def __init__(self, inner):
+            self._inner = inner
+
+        def __getattr__(self, name):
+            return getattr(self._inner, name)
+
+    plain, seen = Observer(), []
+    plain.sent = seen.append
+    hears = Hears()
+    Audience([plain, Wrapper(hears)]).transcribed(EXCERPT)
+    assert seen == hears.lines == EXCERPT.lines()
+    assert Audience([Wrapper(hears)]).listens
+    assert not Audience([Wrapper(Stumbles())]).listens
+
+
 def test_intervals_are_the_shortest_asked_for():
     slow = Reads()
     slow.sample_interval = 2.0

@@ -130,6 +130,7 @@ def go_on(mover, pieces, time):
         if piece.kind == TURN:
             mover.spent_turning += energy
         else:
+            mover.spent_driving += energy
             mover.path += far
         if mover.phase == EMPTY:
             mover.speed = 0.0

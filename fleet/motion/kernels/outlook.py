@@ -22,10 +22,13 @@ def outlook(
     heading: float,
 ) -> float:
     """The energy [J] of driving along ``path``, (k,) PIECE, from (x, y) [m] and ``heading`` [rad]:
-    the turn on the spot and all ramps included, but nothing for others on the way.
+    the turn on the spot and all ramps included, but nothing for others on the way. Where there is
+    no path to drive it is nothing.
 
     ``ghosts``, (1,) MOVER, and ``pieces``, (1, more than k) PIECE, are work space.
     """
+    if len(path) == 0:
+        return 0.0
     ghost, end = ghosts[0], len(path) + 1
     for k in range(1, end):
         pieces[0, k] = path[k - 1]

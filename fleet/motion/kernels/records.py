@@ -122,7 +122,8 @@ MOVER = record_type(
         ("waited", "i8"),  # steps
         ("contacts", "i8"),
         ("jostled", "f8"),  # the part of its path that was driven adrift [m]
-        ("spent_turning", "f8"),  # the parts of what was spent [J]
+        ("spent_turning", "f8"),  # the parts of what was spent, each kept by itself [J]
+        ("spent_driving", "f8"),
         ("spent_waiting", "f8"),
         ("spent_adrift", "f8"),
         ("best", "f8"),  # adrift: the least that was left to go [m]

@@ -83,8 +83,6 @@ class TripLog(Observer):
         charge, heading = self._set_off.pop(trip.robot)
         spec = self._fleet.spec
         drained = charge - self._fleet.robots[trip.robot].battery.charge
-        if spec.extra.idle:  # which batteries pay for besides, before and after the trip
-            drained = trip.energy
         self.rows.append(row_of(trip, heading, drained, spec))
         self._served += trip.outcome == "arrived"
         if trip.outcome != "arrived":

@@ -139,6 +139,18 @@ def test_a_robot_that_knows_its_drive_pays_what_it_bid(crowd, spec):
     assert gone > 10
 
 
+def test_where_it_stands_already_a_drive_costs_nothing(driving):
+    motion, (one, two) = driving([(0.5, 0.5), (5.0, 5.0)], SPEC, belief="driven")
+    corner = (0.02, 0.01)  # nobody gets nearer to it than to its radius and clearance
+    motion.depart(one, corner)
+    motion.advance(inf)
+    assert two.cost_to((9.0, 9.0)) > 100.0  # what is left of that must not be taken for a way
+    assert one.cost_to(corner) == 0.0
+    motion.depart(one, corner)
+    (trip,) = motion.advance(inf)
+    assert (trip.outcome, trip.energy) == ("arrived", 0.0)
+
+
 def test_reachability_is_asked_for_only_if_wanted(driving):
     for wanted in (True, False):
         motion, robots = driving([(5.0, 5.0), *RING], SPEC, reachability=wanted)

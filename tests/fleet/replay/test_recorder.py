@@ -202,6 +202,22 @@ def test_a_user_is_told_where_nothing_can_be_recorded(tmp_path):
             recorder(scenario, path)
 
 
+@pytest.mark.parametrize("there", [True, False])
+def test_a_run_that_is_refused_leaves_what_was_there(tmp_path, there):
+    path = tmp_path / "run.rrd"
+    if there:
+        path.write_bytes(b"an older recording")
+    options = ["--set", "robots=30", "--set", "range=0.1", "--motion", "straight", "--rrd", path]
+    done = subprocess.run(
+        [sys.executable, "-m", "fleet", "run", *map(str, options)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "range is 0.1 m" in done.stderr
+    assert path.exists() == there
+    assert not there or path.read_bytes() == b"an older recording"
+
+
 def test_the_folder_of_a_recording_is_made(tmp_path):
     watching = recorder(scenario_from({"motion": "straight"}), tmp_path / "a" / "b" / "run.rrd")
     simulation([watching], rounds=1).run()

@@ -89,7 +89,7 @@ def test_streams_have_waiting_or_contact_and_add_up(traffic):
         and (task.labels["radius"], task.labels["rate"]) == (0.2, campaign.RATES[-1])
     ]
     trips = trips_of(play(task))
-    assert closure(trips) < 1e-3
+    assert closure(trips) < 1e-9
     found = {"reserved": "waiting", "free": "contact"}[traffic]
     other = {"reserved": "contact", "free": "waiting"}[traffic]
     assert trips.part(found).sum() > 1.0
