@@ -38,7 +38,7 @@ class RobotSpec:
         ):  # fmt: skip
             value = getattr(self, name)
             if not 0.0 < value < inf:
-                raise ValueError(f"robot {name} is {value}; expected more than 0")
+                raise ValueError(f"robot {name} is {value}; expected more than 0, and finite")
         if self.drive not in ("differential", "holonomic"):
             raise ValueError(
                 f"robot drive is {self.drive!r}; expected 'differential' or 'holonomic'"

@@ -43,9 +43,22 @@ class EventsEntry(NamedTuple):
     source: str
 
 
-def random(*, width: float = 10.0, height: float = 10.0) -> World:
-    """Robots and events anywhere on an open floor: the paper's random topology."""
-    return World(Arena(width, height))
+def random(*, width: float = 10.0, height: float = 10.0, room: float = 0.0) -> World:
+    """Robots and events anywhere on an open floor: the paper's random topology.
+
+    Every robot starts with ``room`` [m] around its middle, or what its body takes if that is
+    more: so points can be made to start where bodies of that radius would.
+
+    Raises:
+        ValueError: ``room`` is negative.
+    """
+    if not room >= 0.0:
+        raise ValueError(f"room is {room} m; expected 0 or more")
+
+    def place(arena: Arena, count: int, radius: float, rng: np.random.Generator) -> FloatArray:
+        return scatter(arena, count, max(radius, room), rng)
+
+    return World(Arena(width, height), place)
 
 
 def random_hole(

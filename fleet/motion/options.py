@@ -43,9 +43,9 @@ class DriveOptions:
         for name in ("dt", "headway"):
             value = getattr(self, name)
             if not 0.0 < value < inf:
-                raise ValueError(f"motion {name} is {value}; expected more than 0")
-        if self.dt > 0.1:
-            raise ValueError(f"motion dt is {self.dt} s; expected at most 0.1")
+                raise ValueError(f"motion {name} is {value}; expected more than 0, and finite")
+        if not 1e-4 <= self.dt <= 0.1:
+            raise ValueError(f"motion dt is {self.dt} s; expected 0.0001 to 0.1")
         for name, kinds in (("traffic", Traffic), ("belief", Belief)):
             if getattr(self, name) not in get_args(kinds):
                 expected = " or ".join(map(repr, get_args(kinds)))

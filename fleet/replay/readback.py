@@ -49,7 +49,7 @@ class Recording:
                 raise ValueError(f"{path}: not a Rerun recording") from error
             raise ValueError(
                 f"{path}: the recording is cut off or damaged;"
-                f" `rerun rrd optimize {path.name} -o repaired.rrd` saves what is whole"
+                f" `rerun rrd optimize {path} -o {path.stem}-mended.rrd` may save what is whole"
             ) from error
         if not any(entry.application_id in (APPLICATION, COMPARISON) for entry in entries):
             raise ValueError(f"{path}: not a recording of a fleet, but of something else")

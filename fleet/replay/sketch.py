@@ -38,8 +38,10 @@ THEMES = {
 }
 
 
-LEFT, ACROSS = 0.085, 0.76  # the floor, in shares of a figure's width
-BELOW, ABOVE = 0.9, 0.3  # the floor, for axis and legend, and for the caption [in]
+BESIDE, BEYOND = 0.44, 0.82  # the floor, for the axis and for the scale of energies [in]
+BELOW, ABOVE = 0.5, 0.3  # the floor, for the axis and for the caption [in]
+ROW, COLUMN = 0.14, 1.25  # of the legend [in]
+ENTRIES = 10  # that it has at most, nearly always
 LINES: tuple[tuple[str, str, int, Literal["-", "--"], float], ...] = (  # of the legend
     (scheme.DRIVEN, "way driven", scheme.WINNER_COLOUR, "-", 2.2),
     (scheme.PLANNED, "way planned", scheme.PLANNED_COLOUR, "-", 0.8),
@@ -48,10 +50,13 @@ LINES: tuple[tuple[str, str, int, Literal["-", "--"], float], ...] = (  # of the
     (scheme.ROUTING, "link", scheme.ROUTING_COLOUR, "-", 1.4),
     (scheme.DEAD, "off the air", scheme.CROSS_COLOUR, "-", 1.4),
 )
-COLUMNS = 4  # of the legend
-
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, bottom, width and height, in shares of a figure."""
+
+
+def columns(width: float) -> int:
+    """How many columns a legend has room for in a figure of that ``width`` [in]."""
+    return max(1, min(4, int((width - 0.2) / COLUMN)))
 
 
 class Sketch:
@@ -107,19 +112,27 @@ class Sketch:
 
     def height(self, width: float) -> float:
         """How high a figure of that width is, all in inches."""
-        return BELOW + self._floor_height(width) + ABOVE
+        return self._below(width) + self._floor_height(width) + ABOVE
 
     def boxes(self, width: float) -> tuple[Box, Box]:
         """Where in a figure of that width the floor is, and the scale of energies."""
-        height, floor = self.height(width), self._floor_height(width)
+        height, floor, below = self.height(width), self._floor_height(width), self._below(width)
+        left, across = BESIDE / width, 1.0 - (BESIDE + BEYOND) / width
         return (
-            (LEFT, BELOW / height, ACROSS, floor / height),
-            (LEFT + ACROSS + 0.026, (BELOW + 0.2 * floor) / height, 0.022, 0.6 * floor / height),
-        )
+            (left, below / height, across, floor / height),
+            (
+                left + across + 0.14 / width, (below + 0.2 * floor) / height, 0.12 / width,
+                0.6 * floor / height,
+            ),
+        )  # fmt: skip
+
+    def _below(self, width: float) -> float:
+        """Room for the axis and the legend [in]."""
+        return BELOW + ROW * ceil(ENTRIES / columns(width))
 
     def _floor_height(self, width: float) -> float:
         across, up = (side + 0.02 * max(self._size) for side in self._size)
-        return ACROSS * width * min(up / across, 2.0)
+        return (width - BESIDE - BEYOND) * min(up / across, 2.0)
 
     def colour_bar(self, axes: Axes) -> None:
         """What colour means how much energy, into axes of its own."""
@@ -290,8 +303,9 @@ class Sketch:
             ring.set_color(rgb(scheme.EVENT_COLOUR))
             handles.append(ring)
             words.append("event, search radius" if self._search > 0.0 else "event")
+        width = self._axes.figure.bbox.width / self._axes.figure.dpi
         self._axes.legend(
-            handles, words, ncols=min(COLUMNS, ceil(len(words) / 2)), loc="upper center",
+            handles, words, ncols=min(columns(width), ceil(len(words) / 2)), loc="upper center",
             bbox_to_anchor=(0.5, -0.34 / self._axes.bbox.height * self._axes.figure.dpi),
             bbox_transform=self._axes.transAxes, frameon=False, fontsize=6.5,
             labelcolor=self._theme.ink, handlelength=1.6, columnspacing=1.4,

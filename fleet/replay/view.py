@@ -21,6 +21,7 @@ from threading import current_thread, main_thread
 from fleet.replay.serving import LOOPBACK, Part, parts_of, serving
 
 PATIENCE = 30.0  # [s] for a viewer to start
+SETTLING = 0.5  # [s] in which it finds out that it cannot
 
 
 def view(
@@ -109,7 +110,7 @@ def spawn_viewer() -> str:
         stderr=subprocess.DEVNULL,
         start_new_session=True,
     )  # fmt: skip
-    if not _answers(port, viewer):
+    if not (_answers(port, viewer) and _stays(viewer)):
         raise ValueError("the viewer cannot open a window here; record to a file instead")
     viewer.returncode = 0  # it is on its own now: nobody waits for it
     return f"rerun+http://{LOOPBACK}:{port}/proxy"
@@ -189,6 +190,15 @@ def _open_window(recording: Path) -> None:
             raise ValueError(
                 f"the viewer cannot open a window here: {reason}; try --web, or fleet picture"
             )
+
+
+def _stays(process: subprocess.Popen[bytes]) -> bool:
+    """Whether it is still there in a moment: it listens before it looks for a screen."""
+    try:
+        process.wait(SETTLING)
+    except subprocess.TimeoutExpired:
+        return True
+    return False
 
 
 def _answers(port: int, process: subprocess.Popen[bytes]) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,7 +134,7 @@ def _shades(path: Path, key: str) -> NDArray[np.float64]:
     from PIL import Image, UnidentifiedImageError
 
     try:
-        with Image.open(path) as image:
+        with catch_warnings(action="ignore"), Image.open(path) as image:  # of large images
             if image.width * image.height > MOST_CELLS:
                 raise bad(
                     key,

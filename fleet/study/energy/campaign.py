@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from fleet.robot import RobotSpec
 from fleet.study.task import Task
 
 DRIVE = "fleet.study.energy.measuring:drive_tasks"
@@ -83,8 +84,10 @@ class Place:
     scenario: Mapping[str, Any]
 
 
+OPEN = "open floor"
+AS_IN_THE_PAPER = "as in the paper"  # bid and driven by Eq. (1)
 PLACES = (
-    Place("open floor", PAPER, {}),
+    Place(OPEN, PAPER, {}),
     Place("pit", "pit", {"world": "pit"}),
     Place("rooms", "rooms", {"world": "rooms"}),
     Place("warehouse", "warehouse", {"world": "warehouse"}),
@@ -145,11 +148,13 @@ def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Ta
         for place in PLACES:
             ways: dict[str, Any] = {bid: {"name": "path", "belief": bid} for bid in BIDS}
             ways["corrected"]["per_launch"] = launch[place.setting]
-            if place.name == "open floor":
-                ways = {"as in the paper": "straight"} | ways
+            if place.name == OPEN:
+                ways = {AS_IN_THE_PAPER: "straight"} | ways
             for protocol in PROTOCOLS:
                 for bids, motion in ways.items():
                     scenario = {"protocol": protocol, "motion": motion, "seed": number}
+                    if bids == AS_IN_THE_PAPER:  # the points start where the bodies do
+                        scenario["world"] = {"name": "random", "room": RobotSpec().radius}
                     kept = bids == "straight" and number < seed + size.recorded
                     yield Task.of(
                         {**scenario, **place.scenario},

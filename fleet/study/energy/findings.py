@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isinf
+from math import isfinite, isinf
 
 import numpy as np
 
 from fleet.robot import RobotSpec
 from fleet.study.energy.accuracy import Accuracy, accuracy, ratio_interval, usable_from
-from fleet.study.energy.campaign import PAPER, PLACES, PROTOCOLS
+from fleet.study.energy.campaign import AS_IN_THE_PAPER, OPEN, PAPER, PROTOCOLS
 from fleet.study.energy.launching import launch_cost
 from fleet.study.energy.lives import BASELINE, Life, find
 from fleet.study.energy.models import CORRECTED, EQ1, fit, held_out
 from fleet.study.energy.trips import Trips, closure
 from fleet.study.statistics import Interval
 
-OPEN = PLACES[0].name
 WORLDS = ("pit", "rooms", "warehouse")  # with things to drive around
 LONG = 3.5  # [m] of trips that are long
 TOLERABLE = 0.10  # share by which Eq. (1) may be off and still be used
@@ -75,7 +74,7 @@ def findings(single: Trips, streams: Trips, lived: Trips, listed: Sequence[Life]
         overrated={
             life.protocol: life.means["lifetime"].value / driven.means["lifetime"].value
             for life in listed
-            if life.bids == "as in the paper"
+            if life.bids == AS_IN_THE_PAPER
             and (driven := find(listed, life.place, life.protocol, BASELINE))
         },
         closure=max(closure(trips) for trips in (single, streams, lived)),
@@ -85,14 +84,15 @@ def findings(single: Trips, streams: Trips, lived: Trips, listed: Sequence[Life]
 
 def verdict(found: Findings) -> str:
     """When the linear assumption may be used and when not, from what was measured."""
-    fits = abs(found.asked.value - 1.0) <= TOLERABLE
+    bounds = [bound for bound in found.asked if isfinite(bound)]
+    fits = max(abs(1.0 / bound - 1.0) for bound in bounds) <= TOLERABLE
     return (
         f"Eq. (1), energy linear in the straight distance, may be used for long trips over an open"
         f" floor: {_usable(found.within_10, 'a tenth', found.longest)},"
         f" and {_usable(found.within_5, 'a twentieth', found.longest)}."
         f" It may {'also' if fits else 'not'} be used for what the protocols ask for: the"
-        f" {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, that whole"
-        f" lifetimes were made of drained {_more(found.asked.value)} than it says. Where it may"
+        f" {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, by which robots"
+        f" arrived in whole lifetimes drained {_more(found.asked.value)} than it says. Where it may"
         f" not, Eq. (1) on the planned path and {found.launch.value:.1f} J a launch come nearer:"
         f" R² = {found.corrected.r2:.4f} on tasks that this was not fitted on."
     ).replace("-", "−")
@@ -100,6 +100,11 @@ def verdict(found: Findings) -> str:
 
 def details(found: Findings) -> list[str]:
     """What else there is to know, a sentence or two each."""
+    by_protocol = (
+        f"The trips of lifetimes drained {found.asked.value:.3f} times what it says"
+        f" [{found.asked.low:.3f}, {found.asked.high:.3f}]; by protocol:"
+        f" {_listed(found.by_protocol)}."
+    )
     left_out = (
         f"What Eq. (1) leaves out comes with every launch, not with every metre: turning, speeding"
         f" up and braking cost {found.launch.value:.2f} J"
@@ -115,7 +120,7 @@ def details(found: Findings) -> list[str]:
         f" ({found.asked_eq1.r2:.3f})."
     )
     said = [
-        f"By protocol, the trips of lifetimes drained: {_listed(found.by_protocol)}.",
+        by_protocol,
         f"Among obstacles, trips of {LONG:g} m and more drained: {_listed(found.by_world)}.",
         left_out,
         corrected,
@@ -152,20 +157,23 @@ def on_bids(listed: Sequence[Life]) -> str:
         f" to the first event that nobody takes, changes by {min(changes):+.0f} % to"
         f" {max(changes):+.0f} %. It is no measure of this: if a robot dies on its way another one"
         " is sent, and the event counts as served, so whoever takes a chance lives longer by it."
-        f" Over all places and protocols {'; '.join(_changed(listed, bids) for bids in tried)}."
+        f" Over all places and protocols {'; '.join(_changed(listed, bids) for bids in tried)}:"
+        " cases whose interval leaves out 0, as that of one in twenty would by chance."
     ).replace("-", "−")
 
 
 def _changed(listed: Sequence[Life], bids: str) -> str:
     """How often the lifetime is another one than with bids by Eq. (1), and where the most."""
     mine = [life for life in listed if life.bids == bids]
-    found = [life.differences["lifetime"] for life in mine]
-    longer = sum(difference.low > 0.0 for difference in found)
-    shorter = sum(difference.high < 0.0 for difference in found)
-    best = max(mine, key=_gain)
+    longer = [life for life in mine if life.differences["lifetime"].low > 0.0]
+    shorter = sum(life.differences["lifetime"].high < 0.0 for life in mine)
+    best = max(longer, key=_gain, default=None)
+    most = (
+        "" if best is None else f", at most by {_gain(best):.0f} % ({best.place}, {best.protocol})"
+    )
     return (
-        f"bids by {SOURCES[bids]} make it longer in {longer} of {len(mine)} cases and shorter in"
-        f" {shorter}, at best by {_gain(best):+.0f} % ({best.place}, {best.protocol})"
+        f"bids by {SOURCES[bids]} make it longer in {len(longer)} of {len(mine)} cases{most}, and"
+        f" shorter in {shorter}"
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fleet.study.energy.accuracy import accuracy, ratio_interval
-from fleet.study.energy.campaign import PLACES, PROTOCOLS, RATES
+from fleet.study.energy.campaign import AS_IN_THE_PAPER, PLACES, PROTOCOLS, RATES
 from fleet.study.energy.exhibits import Column, Exhibit
 from fleet.study.energy.lives import BASELINE, MEASURES, Life, find
 from fleet.study.energy.trip_exhibits import PART_COLOURS
@@ -17,11 +17,11 @@ from fleet.study.energy.trips import PARTS, Trips
 from fleet.study.report.style import INK, MARKERS, SERIES, WIDTH
 from fleet.study.statistics import Interval, mean_interval
 
-WAYS = {"as in the paper": 6, "straight": 1, "path": 2, "corrected": 0, "driven": 3}
+WAYS = {AS_IN_THE_PAPER: 6, "straight": 1, "path": 2, "corrected": 0, "driven": 3}
 """Ways to bid, with their shades; the first is not only bid but driven in straight lines."""
 BETTER = ("path", "corrected", "driven")
 SAID = {
-    "as in the paper": "bid and driven by Eq. (1), as in the paper",
+    AS_IN_THE_PAPER: "bid and driven by Eq. (1), as in the paper",
     "straight": "bids: Eq. (1), straight",
     "path": "bids: Eq. (1), planned path",
     "corrected": "bids: planned path + launch",
@@ -46,9 +46,10 @@ def by_protocol(trips: Trips) -> Exhibit:
             ])  # fmt: skip
     return Exhibit(
         "lifetimes-trips",
-        "All trips of whole lifetimes, robots bidding by Eq. (1) on the straight line: what they"
-        " drained beyond it, in % of it, and what for. Detours are less than nothing where robots"
-        " stop short of sites that another one covers.",
+        "The trips of whole lifetimes that arrived, of the first seeds of each place, robots"
+        " bidding by Eq. (1) on the straight line: what they drained beyond it, in % of it, and"
+        " what for. Detours are less than nothing where robots stop short of sites that another"
+        " one covers.",
         [
             Column("place"), Column("protocol"), Column("trips", ","),
             Column("straight distance, mean [m]", ".2f"), Column("drained, mean [J]", ".1f"),

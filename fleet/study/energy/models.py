@@ -8,9 +8,9 @@ from math import nan
 
 import numpy as np
 
-from fleet.study.energy.accuracy import Accuracy, accuracy, resampled
+from fleet.study.energy.accuracy import Accuracy, accuracy, expanded, resampled
 from fleet.study.energy.trips import FloatArray, Trips
-from fleet.study.statistics import CONFIDENCE, Interval
+from fleet.study.statistics import Interval
 
 Term = Callable[[Trips], FloatArray]
 
@@ -94,7 +94,7 @@ def fit(model: Model, trips: Trips, seed: int = 0) -> Fit:
         drawn = np.linalg.solve(np.tensordot(weights, products, 1), (weights @ sums)[:, :, None])[
             :, :, 0
         ]
-        low, high = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE], axis=0)
+        low, high = np.quantile(drawn, expanded(groups), axis=0)
     return Fit(model, tuple(map(Interval, best.tolist(), low.tolist(), high.tolist())))
 
 

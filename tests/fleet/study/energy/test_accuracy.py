@@ -59,7 +59,23 @@ def test_one_placement_has_a_ratio_without_bounds():
 def test_usable_from_where_a_launch_no_longer_shows():
     straight = np.linspace(0.05, 7.0, 40_000)
     eq1 = 20.0 * straight
-    assert usable_from(straight, eq1 + 5.0, eq1, 0.1) == pytest.approx(2.5)
+    assert usable_from(straight, eq1 + 5.0, eq1, 0.1) == pytest.approx(2.25)
     assert usable_from(straight, eq1, eq1, 0.1) == 0.0
     assert usable_from(straight, 1.2 * eq1, eq1, 0.1) == inf
     assert usable_from(straight, 0.8 * eq1, eq1, 0.1) == inf
+
+
+@pytest.mark.parametrize("groups", [5, 8, 20])
+def test_intervals_over_few_groups_cover_what_they_promise(groups):
+    """Trips of a group share an effect; the percentile interval would cover 0.8 to 0.92."""
+    rng = np.random.default_rng(groups)
+    which = np.repeat(np.arange(groups), 10)
+    covered = 0
+    for _ in range(400):
+        said = rng.uniform(1.0, 9.0, len(which))
+        drained = said * (1.3 + rng.normal(0.0, 0.1, groups)[which]) + rng.normal(
+            0.0, 0.1, len(which)
+        )
+        found = ratio_interval(drained, said, which)
+        covered += found.low <= 1.3 <= found.high
+    assert 0.905 <= covered / 400 <= 0.98
