@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from protocols.compiled import kernel
+from protocols.links import BESIDE, RIGHT_ANGLE
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 
 UDG, GABRIEL, RNG = 0, 1, 2
-RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one,
-BESIDE = 1e-16  # but not for robots so much nearer to one end (squared): both would yield
 
 
 @kernel

@@ -58,11 +58,9 @@ MOMENT = Moment()
 )
 @click.option("--speed", type=float, default=1.0,
               help="Simulated seconds in a second of a clip, while robots drive.  [1]")  # fmt: skip
+@click.option("--width", "size", type=click.FloatRange(3.2, 40.0), help="In inches.  [5.2]")
 @click.option(
-    "--width", "size", type=click.FloatRange(3.2, 40.0), help="In inches.  [5.2; clips: 4.4]"
-)
-@click.option(
-    "--dpi", "dots_per_inch", type=click.IntRange(30, 1200), help="Dots an inch.  [160; clips: 110]"
+    "--dpi", "dots_per_inch", type=click.IntRange(30, 1200), help="Dots an inch.  [160; clips: 130]"
 )
 def command(
     recording: Path,

@@ -21,29 +21,21 @@ def law_of(
     """The record (1,) LAW that all kernels share."""
     stride = max(1, round(TICK / options.dt))
     law = np.zeros(1, LAW)
-    law[0] = (
-        options.dt,
-        spec.radius,
-        spec.cruise,
-        spec.acceleration,
-        spec.turn_rate,
-        spec.turn_acceleration,
-        spec.mass,
-        0.5 * spec.wheel_track,
-        spec.power.quadratic,
-        spec.power.linear,
-        spec.power.constant,
-        spec.extra.idle,
-        spec.extra.kinetic,
-        spec.extra.per_wheel,
-        spec.drive == "holonomic",
-        spec.reverse,
-        options.traffic == "reserved",
-        stride,
-        2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt),
-        0 if sample_interval is None else max(1, round(sample_interval / options.dt)),
-        1,
-    )
+    law["dt"] = options.dt
+    law["radius"], law["mass"], law["half_track"] = spec.radius, spec.mass, 0.5 * spec.wheel_track
+    law["cruise"], law["acceleration"] = spec.cruise, spec.acceleration
+    law["turn_rate"], law["turn_acceleration"] = spec.turn_rate, spec.turn_acceleration
+    for coefficient in ("quadratic", "linear", "constant"):
+        law[coefficient] = getattr(spec.power, coefficient)
+    for extra in ("idle", "kinetic", "per_wheel"):
+        law[extra] = getattr(spec.extra, extra)
+    law["holonomic"], law["reverse"] = spec.drive == "holonomic", spec.reverse
+    law["reserved"] = options.traffic == "reserved"
+    law["stride"] = stride
+    law["gap"] = 2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt)
+    law["substeps"] = 1
+    if sample_interval is not None:
+        law["sample"] = max(1, round(sample_interval / options.dt))
     return law
 
 

@@ -13,7 +13,18 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from fleet.replay.picture import check_ending, draw, the_moment
-from fleet.replay.scheme import LOG, MSG, ROUND, SIM_TIME
+from fleet.replay.scheme import (
+    EVENT_COLOUR,
+    KIND_COLOURS,
+    LOG,
+    LOST_COLOUR,
+    MSG,
+    RELOCATION_COLOUR,
+    ROUND,
+    ROUTING_COLOUR,
+    SIM_TIME,
+)
+from fleet.replay.shades import TABLE
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -21,9 +32,10 @@ if TYPE_CHECKING:
     from fleet.replay.readback import Recording
 
 ENDINGS = {"gif", "webp", "mp4"}
-VIVID = 60  # of 255 between the channels of a colour that is not grey
-KEPT = 128  # vivid colours
-COLOURS = 224  # of a GIF
+MEANT = (*KIND_COLOURS.values(), LOST_COLOUR, EVENT_COLOUR, RELOCATION_COLOUR, ROUTING_COLOUR)
+SHADES = 64  # of energy
+COMMON = 48  # colours that cover the most
+COLOURS = 255  # of a GIF
 MOST_FRAMES = 3000
 LINGER = 1.0  # [s] that the last picture stays
 NANO = 1e9
@@ -41,8 +53,8 @@ def clip(
     frames_per_second: float = 10.0,
     speed: float = 1.0,
     theme: str = "light",
-    size: float = 4.4,
-    dots_per_inch: int = 110,
+    size: float = 5.2,
+    dots_per_inch: int = 130,
     progress: Callable[[int, int], object] = lambda _done, _of: None,
 ) -> Path:
     """Draw a stretch of a recording as a GIF, a WebP animation, or with ffmpeg as an MP4.
@@ -164,8 +176,9 @@ def _animate(drawn: list[Image], out: Path, frames_per_second: float) -> None:
 def _palette(drawn: list[Image]) -> Image:
     """An image with the colours that all frames share.
 
-    A colour says what an arrow is, and arrows are thin: the vivid colours that cover most are
-    kept as they are, before the rest shares what is left.
+    A colour says what an arrow is and what a battery holds, but arrows are thin and robots small:
+    those colours are there as they are. So are the commonest, such as the ground. The others share
+    what is left of the palette.
     """
     from PIL import Image
 
@@ -175,11 +188,13 @@ def _palette(drawn: list[Image]) -> Image:
         return_counts=True,
     )
     colours = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=-1).astype(np.uint8)
-    spread = np.ptp(colours.astype(int), axis=1)
-    vivid = colours[np.argsort(np.where(spread > VIVID, -counts, 0), kind="stable")[:KEPT]]
-    rest = Image.fromarray(colours[None]).quantize(COLOURS - KEPT, dither=Image.Dither.NONE)
+    meant = np.array([(c >> 24, c >> 16 & 255, c >> 8 & 255) for c in MEANT], np.uint8)
+    common = colours[np.argsort(-counts, kind="stable")[:COMMON]]
+    kept = np.concatenate([meant, TABLE[:: len(TABLE) // SHADES], common])
+    left = COLOURS - len(kept)
+    rest = Image.fromarray(colours[None]).quantize(left, dither=Image.Dither.NONE).getpalette()
     shared = Image.new("P", (1, 1))
-    shared.putpalette([*vivid.ravel().tolist(), *(rest.getpalette() or ())][: 3 * COLOURS])
+    shared.putpalette([*kept.ravel().tolist(), *(rest or ())[: 3 * left]])
     return shared
 
 

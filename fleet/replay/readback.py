@@ -37,7 +37,8 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         if not path.is_file():
-            raise ValueError(f"{path}: no such file")
+            what = "is a directory; expected a recording" if path.is_dir() else "no such file"
+            raise ValueError(f"{path}: {what}")
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # about a footer missing after a crash
