@@ -77,6 +77,7 @@ class RerunRecorder(Observer):
         self._all_drain = True  # also robots that stand still
         self._bent: set[RobotId] = set()  # whose ways were not straight on this trip
         self._entries: list[Entry] = []
+        self._note = self._entries.append
         self._lines = 0  # of the transcript, and
         self._poses = 0  # since the last flush
         self._latest = -1  # id of the latest event
@@ -120,7 +121,7 @@ class RerunRecorder(Observer):
 
     def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
         """Note it."""
-        self._note("air", time, list(on_air))
+        self._note(("air", time, list(on_air)))
 
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """Note it; a new event is also the moment to send what the last rounds left."""
@@ -129,63 +130,63 @@ class RerunRecorder(Observer):
             if self._rounds == self._flush_rounds or self._due():
                 self.flush()
             self._rounds += 1
-        self._note("raised", time, event.id, event.position, source)
+        self._note(("raised", time, event.id, event.position, source))
 
     def transcribed(self, excerpt: Excerpt) -> None:
         """Note it."""
         first, time, event, transmissions, heard, attempts = excerpt
         kinds, senders, receivers, bids = zip(*transmissions, strict=True)
         offers = [None if bid is None else tuple(bid) for bid in bids]
-        self._note("said", time, event, first, kinds, senders, receivers, offers, heard, attempts)
+        self._note(("said", time, event, first, kinds, senders, receivers, offers, heard, attempts))
         self._lines += len(kinds)
         if self._lines > MANY_LINES:
             self.flush()
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """Note it."""
-        bids, moves = [*map(tuple, award.bids)], [*map(tuple, award.moves)]
-        self._note("awarded", time, event.id, award.winner, award.auctioneer, bids, moves)
+        bids, moves = [*zip(*award.bids, strict=True)], [*zip(*award.moves, strict=True)]
+        self._note(("awarded", time, event.id, award.winner, award.auctioneer, bids, moves))
 
     def broken_off(self, event: Event, reason: str, time: float) -> None:
         """Note it."""
-        self._note("broken", time, event.id, reason)
+        self._note(("broken", time, event.id, reason))
 
     def event_closed(self, event: Event, outcome: str, time: float) -> None:
         """Note it."""
-        self._note("over", time, event.id, outcome)
+        self._note(("over", time, event.id, outcome))
 
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """Note it."""
         self._bent.discard(robot)
-        self._note("departed", time, event.id, robot, event.position, False)
+        self._note(("departed", time, event.id, robot, event.position, False))
 
     def planned(self, robot: RobotId, way: NDArray[np.float64], time: float) -> None:
         """Note it, if it is not the straight line that is drawn anyway."""
         if len(way) > 2 or robot in self._bent:
             self._bent.add(robot)
-            self._note("planned", time, robot, way.tobytes())
+            self._note(("planned", time, robot, way.tobytes()))
 
     def relocating(self, event: Event, move: Move, time: float) -> None:
         """Note it."""
         self._bent.discard(move.robot)
-        self._note("departed", time, event.id, move.robot, move.position, True)
+        self._note(("departed", time, event.id, move.robot, move.position, True))
 
     def relocated(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
         end = trip.robot, RELOCATED, *trip[2:FLAT]
-        self._note("ended", event.id, end, self._charges(trip.robot))
+        self._note(("ended", event.id, end, self._charges(trip.robot)))
 
     def moved(self, samples: NDArray[np.float64]) -> None:
         """Note the poses."""
         if len(samples):
-            self._note("moved", samples.tobytes())
+            self._note(("moved", samples.tobytes()))
             self._poses += len(samples)
             if self._poses > MANY_POSES:
                 self.flush()
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        self._note("ended", event.id, trip[:FLAT], self._charges(trip.robot))
+        self._note(("ended", event.id, trip[:FLAT], self._charges(trip.robot)))
 
     def run_ended(self, summary: Summary) -> None:
         """Keep the summary with the recording, but for what differs from run to run."""
@@ -208,12 +209,9 @@ class RerunRecorder(Observer):
         """Send the notes taken since the last time."""
         if self._entries:
             self.scribe.tell("batch", self._entries)
-        self._entries = []
+        self._entries.clear()
         self._lines = self._poses = self._rounds = 0
         self._flushed = time.monotonic()
-
-    def _note(self, *entry: Any) -> None:
-        self._entries.append(entry)
 
     def _charges(self, robot: RobotId) -> list[float]:
         """What batteries hold: that of a robot that has driven, or all if all are drained."""

@@ -93,13 +93,13 @@ class Teller:
 
     def _awarded(
         self, time: float, event: int, winner: RobotId | None, auctioneer: RobotId,
-        bids: list[tuple[float, RobotId]], moves: list[tuple[RobotId, Point]],
+        bids: list[tuple[Any, ...]], moves: list[tuple[Any, ...]],
     ) -> None:  # fmt: skip
         self._story.now = time
         at = self._moment(self._number)
-        award = Award(
-            winner, auctioneer, tuple(map(Bid._make, bids)), tuple(map(Move._make, moves))
-        )
+        offers = map(Bid._make, zip(*bids, strict=True))
+        ways = map(Move._make, zip(*moves, strict=True))
+        award = Award(winner, auctioneer, tuple(offers), tuple(ways))
         for page in self._pages:
             page.awarded(at, event, award)
 
