@@ -81,7 +81,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", type=int, default=100)
     parser.add_argument("--rounds", type=int)
-    parser.add_argument("--repeat", type=int, default=7)
+    parser.add_argument("--repeat", type=int, default=15)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     side = (given.robots / 100.0) ** 0.5 * 10.0  # one robot to the square metre

@@ -90,9 +90,9 @@ class Observer:
         """A robot sets off to an event."""
 
     def planned(self, robot: RobotId, way: NDArray[np.float64], time: float) -> None:
-        """A robot that has departed knows its way, (k, 2) [m]; again if it must plan anew.
+        """A robot that has departed takes a ``way`` (k, 2) [m] that bends, or had to plan anew.
 
-        Only of bodies that drive around others, and if an observer asks for poses.
+        Only if an observer asks for poses.
         """
 
     def relocating(self, event: Event, move: Move, time: float) -> None:

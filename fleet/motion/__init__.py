@@ -78,6 +78,8 @@ class Motion(Protocol):
     def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
         """Who has planned a way since the last call, and its corners (k, 2) [m], in order.
 
+        A straight way goes without saying, unless it was planned anew while under way.
+
         Empty unless motion was made with a sample interval.
         """
 

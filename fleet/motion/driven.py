@@ -22,7 +22,7 @@ from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
 from fleet.motion.law import fine_substeps, law_of
 from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
-from fleet.motion.planning import Plan, Planner, corners
+from fleet.motion.planning import Planner, corners
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
@@ -155,7 +155,8 @@ class DrivenMotion:
             plan.pieces, self._step,
         )  # fmt: skip
         self._planner.changed()
-        self._show_plan(robot.id, plan)
+        if self._watched and len(plan.pieces) > 1:
+            self._plans.append((robot.id, corners(plan.pieces)))
         self._under_way.add(robot.id)
         self._robots.append(robot)
         self._batteries.append(robot.battery)
@@ -199,7 +200,7 @@ class DrivenMotion:
                 return
 
     def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
-        """Ways planned since the last call: at departures, and anew after a push or a breakdown."""
+        """Ways planned since the last call: those that bend, and all that were planned anew."""
         plans, self._plans = self._plans, []
         return plans
 
@@ -271,12 +272,9 @@ class DrivenMotion:
             return "arrived"
         self._movers.resume(slot, plan.pieces, self._step)
         self._planner.changed()
-        self._show_plan(robot.id, plan)
+        if self._watched:
+            self._plans.append((robot.id, corners(plan.pieces)))
         return None
-
-    def _show_plan(self, robot: RobotId, plan: Plan) -> None:
-        if self._watched and plan.pieces is not None and len(plan.pieces):
-            self._plans.append((robot, corners(plan.pieces)))
 
     def _stand(self, voyage: _Voyage) -> None:
         """The robot stands where it is, and rests there for all that others know."""

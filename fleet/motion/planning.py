@@ -32,19 +32,18 @@ class Plan(NamedTuple):
 
 
 def corners(pieces: NDArray[Any]) -> NDArray[np.float64]:
-    """A way as a polyline (k, 2) [m], arcs by chords."""
+    """A way of one or more PIECE as a polyline (k, 2) [m], arcs by chords."""
     points: list[Point] = []
-    for piece in pieces:
-        x, y, length = piece.x, piece.y, piece.length
-        if piece.kind == LINE:
-            way = [(x, y), (x + length * piece.cos, y + length * piece.sin)]
+    for kind, x, y, radius, angle, sense, along_x, along_y, length, *_ in pieces.tolist():
+        if kind == LINE:
+            way = [(x, y), (x + length * along_x, y + length * along_y)]
         else:
-            turn = piece.sense * length / piece.radius
-            chords = max(1, ceil(abs(turn) / CHORD))
-            angles = [piece.angle + turn * k / chords for k in range(chords + 1)]
-            way = [(x + piece.radius * cos(a), y + piece.radius * sin(a)) for a in angles]
+            turn = sense * length / radius
+            chords = ceil(abs(turn) / CHORD)
+            angles = [angle + turn * k / chords for k in range(chords + 1)]
+            way = [(x + radius * cos(a), y + radius * sin(a)) for a in angles]
         points += way[1:] if points else way
-    return np.array(points).reshape(-1, 2)
+    return np.array(points)
 
 
 class Planner:

@@ -75,7 +75,6 @@ class RerunRecorder(Observer):
         self._live = bool(live)
         self._batteries: list[Battery] = []
         self._all_drain = True  # also robots that stand still
-        self._bent: set[RobotId] = set()  # whose ways were not straight on this trip
         self._entries: list[Entry] = []
         self._note = self._entries.append
         self._lines = 0  # of the transcript, and
@@ -157,18 +156,14 @@ class RerunRecorder(Observer):
 
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """Note it."""
-        self._bent.discard(robot)
         self._note(("departed", time, event.id, robot, event.position, False))
 
     def planned(self, robot: RobotId, way: NDArray[np.float64], time: float) -> None:
-        """Note it, if it is not the straight line that is drawn anyway."""
-        if len(way) > 2 or robot in self._bent:
-            self._bent.add(robot)
-            self._note(("planned", time, robot, way.tobytes()))
+        """Note it."""
+        self._note(("planned", time, robot, way.tobytes()))
 
     def relocating(self, event: Event, move: Move, time: float) -> None:
         """Note it."""
-        self._bent.discard(move.robot)
         self._note(("departed", time, event.id, move.robot, move.position, True))
 
     def relocated(self, event: Event, trip: Trip) -> None:
