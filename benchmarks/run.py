@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-ALL = ("lifetimes", "motion", "live", "delivery", "replay", "study")
+ALL = ("lifetimes", "motion", "live", "delivery", "replay", "scrubbing", "study")
 
 
 def main() -> None:

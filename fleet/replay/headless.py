@@ -77,6 +77,11 @@ class HeadlessViewer:
         self._client.set_time(timeline, play_state="paused", **when)
         self.settle()
 
+    def scrub(self, timeline: str, **when: Any) -> None:
+        """Move the cursor as :meth:`go` does, and wait for the next picture only."""
+        self._client.set_time(timeline, play_state="paused", **when)
+        self._client.take_screenshot(max_size=480)
+
     def settle(self) -> None:
         """Wait until the picture no longer changes: chunks are fetched as they are needed."""
         deadline = time.monotonic() + self._patience
