@@ -8,7 +8,7 @@ from math import cos, dist, inf, pi, sin
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fleet.motion.kernels.records import LINE
@@ -51,7 +51,7 @@ class Scene:
             slack = np.minimum(slack, polygon.distance(points) - self.off)
         return slack
 
-    def outlines(self, corners=CORNERS):
+    def outlines(self, corners):
         """Points around everything: corners of polygons that enclose the inflated circles."""
         turn = np.linspace(0.0, 2.0 * pi, corners, endpoint=False)
         ring = np.column_stack([np.cos(turn), np.sin(turn)]) / cos(pi / corners)
@@ -72,9 +72,9 @@ class Scene:
                 ok &= segments_apart(start, ends, a, b) >= self.off
         return ok
 
-    def shortest(self, start, goal):
+    def shortest(self, start, goal, corners=CORNERS):
         """The length of a shortest path along sampled outlines; inf if there is none."""
-        nodes = self.outlines()
+        nodes = self.outlines(corners)
         nodes = np.vstack([start, goal, nodes[self.slack(nodes) >= 0.0]])
         graph = nx.Graph()
         graph.add_nodes_from(range(len(nodes)))
@@ -153,6 +153,7 @@ def check(scene, plan, start, goal, trace, slack=0.0):
 
 
 @given(st.integers(0, 2**31), st.sampled_from([3, 8, 14]), st.sampled_from(ARENAS))
+@example(seed=8642, count=14, arena=ARENAS[2])  # a gap that only fine polygons leave open
 @settings(max_examples=15, deadline=None)
 def test_no_sampled_path_is_shorter_and_none_is_found_where_there_is_none(
     trace, seed, count, arena
@@ -167,8 +168,11 @@ def test_no_sampled_path_is_shorter_and_none_is_found_where_there_is_none(
     assert plan.goal == goal
     check(scene, plan, start, goal, trace)
     assert dist(start, goal) - 1e-9 <= plan.length <= shortest + 1e-6
-    if shortest < inf:
-        assert plan.length >= shortest * cos(pi / CORNERS) ** 2 - 1e-3
+    if shortest < inf and plan.length < shortest * cos(pi / CORNERS) ** 2 - 1e-3:
+        # Through a gap that so coarse polygons close: finer ones must leave it open.
+        finer = 4 * CORNERS
+        shortest = scene.shortest(start, goal, finer)
+        assert plan.length >= shortest * cos(pi / finer) ** 2 - 1e-3
 
 
 @given(st.integers(0, 2**31), st.sampled_from([0.05, 0.1, 0.2]), st.sampled_from(ARENAS))
