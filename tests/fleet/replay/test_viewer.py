@@ -131,7 +131,7 @@ class ClosesTheWindow(Observer):
     def trip_ended(self, event, trip):
         self.trips += 1
         if self.trips == 5:
-            while not self.path.stat().st_size:
+            while not (self.path.exists() and self.path.stat().st_size):
                 time.sleep(0.05)
             self.viewer.close()
 

@@ -94,7 +94,7 @@ def test_a_quick_study_says_what_the_full_one_does(tmp_path):
     assert "It may not be used for what the protocols ask for" in lead
     threshold = re.search(r"from ([\d.]+) m on it is within a tenth", lead)
     assert 2.5 <= float(threshold[1]) <= 4.0
-    assert float(re.search(r"straight line, R² = ([\d.]+)", lead)[1]) > 0.99
+    assert float(re.search(r"come nearer: R² = ([\d.]+)", lead)[1]) > 0.99
     assert "the parts add up to" in (out / "report.html").read_text("utf-8")
     counts = [StudyResult(out / part).counts() for part in ("trips", "lifetimes")]
     parts = [list(StudyResult(out / part).rows()) for part in ("trips", "lifetimes")]
