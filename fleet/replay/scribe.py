@@ -7,6 +7,7 @@ while the run does.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,8 +15,11 @@ from contextlib import suppress
 from types import TracebackType
 from typing import IO, Any
 
+from fleet.replay.errors import CannotRecord
 from fleet.replay.journal import send
 
+OUTSIDE = re.compile(r"[^:]*\(os error \d+\)|no viewer listens at \S+")
+"""What the scribe says when it is the machine that stops it: a full disk, a viewer that is gone."""
 PIPE = 1 << 20  # [bytes] that it may lag behind before the run waits
 
 
@@ -59,6 +63,7 @@ class Scribe:
         """Hand a frame over.
 
         Raises:
+            CannotRecord: the machine does not let it go on.
             RuntimeError: it has died.
         """
         try:
@@ -76,6 +81,7 @@ class Scribe:
         """That was all: wait until the recording is complete.
 
         Raises:
+            CannotRecord: the machine did not let it be written.
             RuntimeError: it could not be written.
         """
         self._finished = True
@@ -86,9 +92,11 @@ class Scribe:
                 raise self._failure()
 
     def _failure(self) -> RuntimeError:
-        """What it died of; all that it said is a note of the error."""
+        """What it died of; all that it said is a note of the error, unless it could not help it."""
         self._complaints.seek(0)
         said = self._complaints.read().decode(errors="replace").strip()
+        if outside := OUTSIDE.search(said):
+            return CannotRecord(f"the recording {self.name} broke off: {outside[0].strip()}")
         reason = said.splitlines()[-1] if said else f"exit code {self.process.returncode}"
         error = RuntimeError(f"the recording {self.name} broke off: {reason}")
         error.add_note(said)

@@ -170,6 +170,18 @@ def test_a_recording_that_fails_says_so(tmp_path):
         simulation([watching], rounds=10).run()
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
+def test_a_full_disk_is_said_in_a_sentence():
+    done = subprocess.run(
+        [sys.executable, "-m", "fleet", "run", "--motion", "straight", "--rrd", "/dev/full"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == (
+        "fleet: the recording /dev/full broke off: No space left on device (os error 28)\n"
+    )
+
+
 def test_what_the_writer_died_of_is_told(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={})
     watching.scribe.tell("batch", "nonsense")
