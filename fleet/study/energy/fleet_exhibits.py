@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import nan
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from fleet.study.energy.accuracy import accuracy, ratio_interval
-from fleet.study.energy.campaign import AS_IN_THE_PAPER, PLACES, PROTOCOLS, RATES
+from fleet.study.energy.campaign import AS_IN_THE_PAPER, OPEN, PLACES, PROTOCOLS, RATES
 from fleet.study.energy.exhibits import Column, Exhibit
 from fleet.study.energy.lives import BASELINE, MEASURES, Life, find
+from fleet.study.energy.models import Fit
 from fleet.study.energy.trip_exhibits import PART_COLOURS
 from fleet.study.energy.trips import PARTS, Trips
 from fleet.study.report.style import INK, MARKERS, SERIES, WIDTH
@@ -19,6 +21,7 @@ from fleet.study.statistics import Interval, mean_interval
 
 WAYS = {AS_IN_THE_PAPER: 6, "straight": 1, "path": 2, "corrected": 0, "driven": 3}
 """Ways to bid, with their shades; the first is not only bid but driven in straight lines."""
+ALL = "all"
 BETTER = ("path", "corrected", "driven")
 SAID = {
     AS_IN_THE_PAPER: "bid and driven by Eq. (1), as in the paper",
@@ -29,36 +32,43 @@ SAID = {
 }
 
 
-def by_protocol(trips: Trips) -> Exhibit:
+def by_protocol(trips: Trips, corrected: Fit) -> Exhibit:
     """The trips that protocols really ask for."""
     rows = []
     for place in PLACES:
-        for protocol in PROTOCOLS:
-            some = trips.where(place=place.name, protocol=protocol).arrived()
+        here = trips.where(place=place.name).arrived()
+        for protocol in (*PROTOCOLS, *([ALL] if place.name == OPEN else [])):
+            some = here if protocol == ALL else here.where(protocol=protocol)
             if not len(some):
                 continue
-            found = accuracy(some["drained"], some.eq1)
+            found, better = (
+                accuracy(some["drained"], said) for said in (some.eq1, corrected.predict(some))
+            )
+            known = place.name == OPEN  # to the fit, which is of the open floor
             rows.append([
                 place.name, protocol, found.trips, float(np.mean(some["straight"])), found.drained,
                 found.bias, found.rmse, found.r2,
                 ratio_interval(some["drained"], some.eq1, some["seed"]),
                 *(100.0 * float(some.part(name).sum() / some.eq1.sum()) for name in PARTS[:3]),
+                better.rmse if known else nan, better.r2 if known else nan,
             ])  # fmt: skip
     return Exhibit(
         "lifetimes-trips",
         "The trips of whole lifetimes that arrived, of the first seeds of each place, robots"
         " bidding by Eq. (1) on the straight line: what they drained beyond it, in % of it, and"
         " what for. Detours are less than nothing where robots stop short of sites that another"
-        " one covers.",
+        " one covers. Corrected is Eq. (1) on the planned path and a launch, fitted on the single"
+        " tasks of the open floor.",
         [
             Column("place"), Column("protocol"), Column("trips", ","),
             Column("straight distance, mean [m]", ".2f"), Column("drained, mean [J]", ".1f"),
             Column("bias [J]", ".2f"), Column("RMSE [J]", ".2f"), Column("R²", ".3f"),
             Column("drained / Eq. (1)", ".3f"),
             *(Column(f"{name} [% of Eq. (1)]", ".1f") for name in PARTS[:3]),
+            Column("corrected: RMSE [J]", ".2f"), Column("corrected: R²", ".4f"),
         ],
         rows,
-        _stacks(rows),
+        _stacks([row for row in rows if row[1] != ALL]),
     )  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from fleet.study.energy.campaign import ENGINE, NO_INERTIA, PAPER
 from fleet.study.energy.exhibits import Exhibit
 from fleet.study.energy.findings import details, findings, on_bids, on_closure, verdict
 from fleet.study.energy.lives import Life
-from fleet.study.energy.models import LINE, fit
+from fleet.study.energy.models import CORRECTED, LINE, fit
 from fleet.study.energy.trips import Trips
 from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
 from fleet.study.version import environment
@@ -48,7 +48,7 @@ def write_report(
             trip_exhibits.by_part(paper),
             trip_exhibits.by_model(paper),
             trip_exhibits.by_setting(single),
-            fleet_exhibits.by_protocol(lived),
+            fleet_exhibits.by_protocol(lived, fit(CORRECTED, paper)),
             fleet_exhibits.in_traffic(streams),
             fleet_exhibits.lifetimes(listed),
             fleet_exhibits.differences(listed),
