@@ -32,7 +32,7 @@ class Scribe:
     def __init__(self) -> None:
         self.name = "of the run"  # what it draws, for errors
         self._finished = False
-        self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - until the end
+        self._complaints: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by finish()
         search = os.pathsep.join(path or "." for path in sys.path)
         self.process = subprocess.Popen(
             [sys.executable, "-m", "fleet.replay.writer"],
@@ -92,12 +92,17 @@ class Scribe:
                 raise self._failure()
 
     def _failure(self) -> RuntimeError:
-        """What it died of; all that it said is a note of the error, unless it could not help it."""
+        """What it died of; all that it said is a note of the error.
+
+        Only what Rerun or the network raised can be the machine's fault: any other error is ours,
+        whatever was said of the machine before.
+        """
         self._complaints.seek(0)
         said = self._complaints.read().decode(errors="replace").strip()
-        if outside := OUTSIDE.search(said):
-            return CannotRecord(f"the recording {self.name} broke off: {outside[0].strip()}")
         reason = said.splitlines()[-1] if said else f"exit code {self.process.returncode}"
-        error = RuntimeError(f"the recording {self.name} broke off: {reason}")
+        kind, outside = RuntimeError, OUTSIDE.search(said)
+        if outside and reason.startswith(("RuntimeError:", "ConnectionError:")):
+            kind, reason = CannotRecord, outside[0].strip()
+        error = kind(f"the recording {self.name} broke off: {reason}")
         error.add_note(said)
         return error

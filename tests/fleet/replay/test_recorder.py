@@ -14,8 +14,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fleet.motion import Trip
 from fleet.observer import Observer
 from fleet.replay import recorder, scheme
+from fleet.replay.errors import CannotRecord
+from fleet.replay.journal import TripEnd
 from fleet.replay.readback import Recording
 from fleet.replay.recording import RerunRecorder
 from fleet.replay.view import viewer_binary, viewer_environment
@@ -163,6 +166,10 @@ def is_running(pid):
     return "Z" not in Path(f"/proc/{pid}/stat").read_text().split(")")[1][:3]
 
 
+def test_the_end_of_a_trip_is_the_beginning_of_its_fields():
+    assert Trip._fields[: len(TripEnd._fields)] == TripEnd._fields
+
+
 def test_a_recording_that_fails_says_so(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={}, flush_rounds=1)
     watching.scribe.process.kill()
@@ -187,6 +194,7 @@ def test_what_the_writer_died_of_is_told(tmp_path):
     watching.scribe.tell("batch", "nonsense")
     with pytest.raises(RuntimeError, match="AssertionError") as caught:
         watching.closed()
+    assert not isinstance(caught.value, CannotRecord)  # it is our fault: nobody may hide it
     assert "Traceback" in caught.value.__notes__[0]
 
 
