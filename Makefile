@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-all lint bench browser clean
+.PHONY: demo test test-slow test-all lint bench browser clean
 
 demo: $(VENV)/.ready ## one run with the defaults, recorded
 	$(BIN)/fleet run --rrd out/demo.rrd
@@ -12,8 +12,10 @@ demo: $(VENV)/.ready ## one run with the defaults, recorded
 test: $(VENV)/.ready-dev ## the fast tests
 	$(BIN)/python -m pytest -n auto
 
-test-all: $(VENV)/.ready-dev browser ## all tests, the slow ones too
-	$(BIN)/python -m pytest -n auto -m ""
+test-slow: $(VENV)/.ready-dev browser ## the slow tests: viewers, kills, studies, long runs
+	$(BIN)/python -m pytest -n auto -m slow
+
+test-all: test test-slow ## all tests
 
 lint: $(VENV)/.ready-dev ## style, types, import contracts
 	$(BIN)/ruff check
