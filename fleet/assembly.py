@@ -32,9 +32,8 @@ from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
 from fleet.simulation import Simulation
 from fleet.timing import Stream
-from protocols.links import connected, unit_disc
 from protocols.messages import Point
-from protocols.topology import Topology
+from protocols.topology import Topology, connected, unit_disc
 from worlds.arena import FloatArray, ImpossibleWorld
 from worlds.catalogue import World
 from worlds.sensors import deploy

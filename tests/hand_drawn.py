@@ -8,9 +8,8 @@ from math import dist, inf
 
 import numpy as np
 
-from protocols.links import connected, unit_disc
 from protocols.messages import Award, Conversation, Event, Heard, Point, RobotId, Transmission
-from protocols.topology import GraphName, Topology
+from protocols.topology import GraphName, Topology, connected, unit_disc
 
 PER_METRE = 19.355789473684212  # Eq. (1) at 0.76 m/s [J/m]
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from protocols.compiled import kernel
-from protocols.relink import blocks, gather
+from protocols.topology.relinking import blocks, gather
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]

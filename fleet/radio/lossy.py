@@ -75,8 +75,8 @@ class LossyRadio:
         self, robots: Sequence[Point], radio_range: float, graph: str, spec: RadioSpec, seed: int
     ) -> None:
         from fleet.radio import airwaves
-        from protocols.cells import Cells
-        from protocols.neighbourhood import GRAPHS
+        from protocols.topology.cells import Cells
+        from protocols.topology.neighbourhood import GRAPHS
 
         if graph not in GRAPHS:
             raise ValueError(

@@ -19,7 +19,7 @@ from fleet.study.task import Outcome, Task
 
 FORKSERVER = "forkserver" in multiprocessing.get_all_start_methods()
 CONTEXT: Any = multiprocessing.get_context("forkserver" if FORKSERVER else "spawn")
-LOADED_ONCE = ["fleet.study.worker", "fleet.assembly", "protocols.relink"]
+LOADED_ONCE = ["fleet.study.worker", "fleet.assembly", "protocols.topology.relinking"]
 """What the server loads before it forks workers: the compiler is the better part of a second."""
 
 _starting = threading.Lock()  # threads of a Dask worker start processes side by side

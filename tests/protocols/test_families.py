@@ -146,7 +146,7 @@ def test_mia_ta_keeps_the_bridge_in_its_place():
 
 
 def test_sparing_a_robot_never_cuts_the_network():
-    from protocols.links import connected, unit_disc
+    from protocols.topology import connected, unit_disc
 
     rng = np.random.default_rng(2)
     spared = 0

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from protocols.links import between, components
-from protocols.topology import GraphName, edges
+from protocols.topology import GraphName, between, components, edges
 
 FloatArray = NDArray[np.float64]
 Codes = NDArray[np.intp]  # (m,) ascending

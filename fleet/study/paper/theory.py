@@ -15,9 +15,8 @@ from fleet.scenario.model import Scenario
 from fleet.study.paper.campaign import RANGES
 from fleet.study.paper.claims import Claim, judged
 from protocols.geometry import crossing
-from protocols.links import connected
 from protocols.messages import Award, Event
-from protocols.topology import edges
+from protocols.topology import connected, edges
 from worlds.arena import Arena, FloatArray, scatter
 
 ROBOTS, SEED = 100, 2021

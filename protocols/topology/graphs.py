@@ -1,15 +1,44 @@
-"""The graphs by their definitions, computed whole: for a start, for checks, for small fleets."""
+"""The graphs by their definitions, computed whole: for a start, for checks, for small fleets.
+
+All graphs are reductions of the unit disc graph (UDG), in which two robots are linked if
+they are within radio range r of each other:
+
+- ``udg``: all of them;
+- ``gabriel`` (GG): links whose diametral disc holds no third robot (Gabriel and Sokal 1969);
+- ``rng``: links whose lune holds no third robot (Toussaint 1980);
+- ``emst``: a Euclidean minimum spanning tree (of each component).
+
+EMST ⊆ RNG ⊆ GG ⊆ UDG. GG is planar and keeps what is connected connected, also for squares,
+lattices and robots in the same place: the diametral disc is closed, an angle counts as right
+within 1e-9 rad, and of robots in one place the lowest id keeps the links.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+GraphName = Literal["gabriel", "udg", "rng", "emst"]
+Edges: TypeAlias = NDArray[np.intp]  # (m, 2), u < v
+
 DENSE_UP_TO = 1000  # robots for which all distances at once are quicker than a tree
 RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one,
 BESIDE = 1e-16  # but not for robots so much nearer to one end (squared): both would yield
+
+
+def edges(positions: NDArray[np.float64], radio_range: float, graph: GraphName) -> Edges:
+    """The edges (u < v) of a graph over ``positions`` (n, 2) [m]; NaN rows have none."""
+    pairs = unit_disc(positions, radio_range)
+    if graph == "gabriel":
+        return gabriel(positions, pairs)
+    if graph == "rng":
+        return relative_neighbourhood(positions, pairs)
+    if graph == "emst":
+        return spanning_tree(positions, pairs)
+    return pairs
 
 
 def unit_disc(positions: NDArray[np.float64], radio_range: float) -> NDArray[np.intp]:

@@ -11,9 +11,8 @@ from hand_drawn import random_connected, random_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protocols import links
 from protocols.geometry import crossing
-from protocols.topology import NOWHERE, Topology, edges
+from protocols.topology import NOWHERE, Topology, edges, graphs
 
 LOCAL = ("udg", "gabriel", "rng")
 COS = 1e-9  # of an angle that counts as right,
@@ -124,18 +123,18 @@ def components(count, pairs):
 def test_a_component_is_named_after_its_lowest_robot(count, data):
     robot = st.integers(0, count - 1)
     pairs = data.draw(st.lists(st.tuples(robot, robot), max_size=80))
-    found = links.components(count, np.array(pairs, np.intp).reshape(-1, 2))
+    found = graphs.components(count, np.array(pairs, np.intp).reshape(-1, 2))
     parts = components(count, pairs)
     assert [found[part].tolist() for part in parts] == [[part[0]] * len(part) for part in parts]
-    assert links.component_count(count, np.array(pairs, np.intp).reshape(-1, 2)) == len(parts)
+    assert graphs.component_count(count, np.array(pairs, np.intp).reshape(-1, 2)) == len(parts)
 
 
 def test_a_long_chain_is_one_component():
     rng = np.random.default_rng(2)
     order = rng.permutation(5000)
     chain = np.stack([order[1:], order[:-1]], axis=1)
-    assert links.connected(5000, chain)
-    assert links.component_count(5000, np.delete(chain, 2500, axis=0)) == 2
+    assert graphs.connected(5000, chain)
+    assert graphs.component_count(5000, np.delete(chain, 2500, axis=0)) == 2
 
 
 def test_spanning_tree_is_minimal_and_inside_the_others():

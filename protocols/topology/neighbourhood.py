@@ -9,9 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from protocols.cells import Cells
 from protocols.messages import Point, RobotId
-from protocols.relink import GABRIEL, RNG, UDG, relink, relink_all
+from protocols.topology.cells import Cells
+from protocols.topology.relinking import GABRIEL, RNG, UDG, relink, relink_all
 
 GRAPHS = {"udg": UDG, "gabriel": GABRIEL, "rng": RNG}
 

@@ -11,7 +11,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from protocols.messages import Point, RobotId
-from protocols.relink import move_cell
+from protocols.topology.relinking import move_cell
 
 
 class Cells:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from protocols.compiled import kernel
-from protocols.links import BESIDE, RIGHT_ANGLE
+from protocols.topology.graphs import BESIDE, RIGHT_ANGLE
 
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]

@@ -1,48 +1,19 @@
-"""Who hears whom: the live graph of the fleet, kept up to date as robots move.
-
-All graphs are reductions of the unit disc graph (UDG), in which two robots are linked if
-they are within radio range r of each other:
-
-- ``udg``: all of them;
-- ``gabriel`` (GG): links whose diametral disc holds no third robot (Gabriel and Sokal 1969);
-- ``rng``: links whose lune holds no third robot (Toussaint 1980);
-- ``emst``: a Euclidean minimum spanning tree (of each component).
-
-EMST ⊆ RNG ⊆ GG ⊆ UDG. GG is planar and keeps what is connected connected, also for squares,
-lattices and robots in the same place: the diametral disc is closed, an angle counts as right
-within 1e-9 rad, and of robots in one place the lowest id keeps the links.
-"""
+"""The live graph of the fleet, kept up to date as robots move."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args, overload
+from typing import TYPE_CHECKING, get_args, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
-from protocols.links import gabriel, relative_neighbourhood, spanning_tree, unit_disc
 from protocols.messages import Point, RobotId
+from protocols.topology.graphs import Edges, GraphName, edges
 
 if TYPE_CHECKING:
-    from protocols.neighbourhood import Neighbourhood
-
-GraphName = Literal["gabriel", "udg", "rng", "emst"]
-Edges: TypeAlias = NDArray[np.intp]  # (m, 2), u < v
+    from protocols.topology.neighbourhood import Neighbourhood
 
 NOWHERE: Point = (float("nan"), float("nan"))  # of a robot that is off the air
-
-
-def edges(positions: NDArray[np.float64], radio_range: float, graph: GraphName) -> Edges:
-    """The edges (u < v) of a graph over ``positions`` (n, 2) [m]; NaN rows have none."""
-    pairs = unit_disc(positions, radio_range)
-    if graph == "gabriel":
-        return gabriel(positions, pairs)
-    if graph == "rng":
-        return relative_neighbourhood(positions, pairs)
-    if graph == "emst":
-        return spanning_tree(positions, pairs)
-    return pairs
 
 
 class Topology:
@@ -79,7 +50,7 @@ class Topology:
         self._links: Neighbourhood | None = None
         self.neighbours = Tables(self.positions)
         if compiled and graph != "emst":
-            from protocols.neighbourhood import Neighbourhood
+            from protocols.topology.neighbourhood import Neighbourhood
 
             self._links = Neighbourhood(self.positions, radio_range, graph)
             self.neighbours.read_from(self._links.of)
