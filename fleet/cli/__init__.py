@@ -9,16 +9,17 @@ import click
 
 from fleet import __version__
 
+# A command is in the file of its name.
 COMMANDS = {
-    "energy": ("fleet.cli.examining", "Test Eq. (1), energy linear in distance, against motion."),
-    "list": ("fleet.cli.listing", "All that a scenario can name, with its sources."),
-    "paper": ("fleet.cli.papering", "Reproduce the paper: its figures, tables and claims."),
-    "picture": ("fleet.cli.picturing", "Draw a moment of a recording, or a clip of it."),
-    "replay": ("fleet.cli.replaying", "Run one run of a study again, from its key."),
-    "report": ("fleet.cli.reporting", "Write the figures and tables of a study as a page."),
-    "run": ("fleet.cli.running", "Play one run and print its summary."),
-    "sweep": ("fleet.cli.sweeping", "Run a study: every combination with every seed."),
-    "view": ("fleet.cli.viewing", "Open recordings in the Rerun viewer."),
+    "energy": "Test Eq. (1), energy linear in distance, against motion.",
+    "list": "All that a scenario can name, with its sources.",
+    "paper": "Reproduce the paper: its figures, tables and claims.",
+    "picture": "Draw a moment of a recording, or a clip of it.",
+    "replay": "Run one run of a study again, from its key.",
+    "report": "Write the figures and tables of a study as a page.",
+    "run": "Play one run and print its summary.",
+    "sweep": "Run a study: every combination with every seed.",
+    "view": "Open recordings in the Rerun viewer.",
 }
 
 
@@ -35,13 +36,13 @@ class LazyGroup(click.Group):
             near = get_close_matches(name, COMMANDS, 1, 0.5)
             hint = f" Did you mean {near[0]!r}?" if near else ""
             ctx.fail(f"No such command {name!r}.{hint}")
-        command: click.Command = import_module(COMMANDS[name][0]).command
+        command: click.Command = import_module(f"fleet.cli.{name}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """One line a command, from the table above."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, COMMANDS[name][1]) for name in self.list_commands(ctx)])
+            formatter.write_dl(sorted(COMMANDS.items()))
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fleet.cli.failing import bad_input_exits
-from fleet.cli.running import program
+from fleet.cli.exits import bad_input_exits, program
 
 if TYPE_CHECKING:
     from fleet.study.ledger import Counts, Failure

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import click
 
@@ -32,3 +33,16 @@ def bad_input_exits() -> Iterator[None]:
     except KeyboardInterrupt:
         click.echo("fleet: interrupted", err=True)
         sys.exit(INTERRUPTED)
+
+
+def program() -> str:
+    """How this program was called, for commands that are printed for the user."""
+    called = Path(sys.argv[0])
+    if not called.is_absolute() and called.parent != Path():
+        return str(called)
+    if called.name == "__main__.py":
+        return f"{Path(sys.executable).name} -m fleet"
+    try:
+        return str(called.relative_to(Path.cwd()))
+    except ValueError:
+        return called.name

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from fleet.cli.failing import bad_input_exits
+from fleet.cli.exits import bad_input_exits
 
 TIMELINES = {"round": "round", "msg": "msg", "message": "msg", "time": "sim_time"}
 THEMES = ("light", "dark")

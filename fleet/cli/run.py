@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fleet.cli.failing import bad_input_exits
+from fleet.cli.exits import bad_input_exits, program
 
 if TYPE_CHECKING:
     from fleet.observer import Observer
@@ -89,16 +89,3 @@ def recorded(scenario: Scenario, path: Path | None, scribe: Scribe, *, live: boo
         raise bad("--rrd", f"{str(path)!r} cannot be written: {error.strerror}") from error
     except ValueError as error:
         raise bad("", str(error)) from error
-
-
-def program() -> str:
-    """How this program was called, for commands that are printed for the user."""
-    called = Path(sys.argv[0])
-    if not called.is_absolute() and called.parent != Path():
-        return str(called)
-    if called.name == "__main__.py":
-        return f"{Path(sys.executable).name} -m fleet"
-    try:
-        return str(called.relative_to(Path.cwd()))
-    except ValueError:
-        return called.name

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.failing import bad_input_exits
+from fleet.cli.exits import bad_input_exits
 
 TIMELINES = ("sim_time", "round", "msg")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.failing import bad_input_exits
+from fleet.cli.exits import bad_input_exits
 
 DIFFERENT = 1
 
