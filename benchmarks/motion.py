@@ -2,7 +2,7 @@
 
 A lifetime's work is what RFTA2 sends 100 robots of radius 0.1 m to do, at a step of 1/60 s. It
 is driven by this project; by a plain program over pymunk's public interface, along the same
-paths by the same law; and, for the floor, the engine alone makes as many steps with one body
+paths by the same params; and, for the floor, the engine alone makes as many steps with one body
 moving. Then come the figures that must hold: who arrives, what touches, who waits, and what the
 step does to the energy. Aims stand in brackets.
 """
@@ -112,11 +112,11 @@ def plain_lifetime(seed):
     began, steps, energy = process_time(), 0, 0.0
     for robot, site in wanted.tasks:
         plan = planner.plan(robot, places[robot], site)
-        if plan.pieces is None or not len(plan.pieces):
+        if plan.segments is None or not len(plan.segments):
             continue
-        names = plan.pieces.dtype.names
-        pieces = [dict(zip(names, piece.tolist(), strict=True)) for piece in plan.pieces]
-        made, drained = world.drive(robot, pieces)
+        names = plan.segments.dtype.names
+        segments = [dict(zip(names, segment.tolist(), strict=True)) for segment in plan.segments]
+        made, drained = world.drive(robot, segments)
         steps += made
         energy += drained
         places[robot] = tuple(world.bodies[robot].position)

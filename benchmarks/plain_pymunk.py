@@ -1,7 +1,7 @@
 """What one writes first: robots driven over pymunk's public interface, by a loop in Python.
 
 The measure that ``motion.py`` takes of physics. It drives along the paths of this project's
-planner, by the same law: a turn on the spot, then a trapezoidal profile, steered by feedback.
+planner, by the same params: a turn on the spot, then a trapezoidal profile, steered by feedback.
 """
 
 from __future__ import annotations
@@ -37,19 +37,21 @@ class PlainWorld:
             wall = pymunk.Segment(self.space.static_body, corner, walls[k - 1], 0.0)
             self.space.add(wall)
 
-    def drive(self, robot, pieces):
+    def drive(self, robot, segments):
         """Turn towards the path, then follow it: (steps, energy [J])."""
         body = self.bodies[robot]
         body.body_type = pymunk.Body.DYNAMIC
-        steps, energy = self._turn(body, pieces[0])
-        rest = [sum(piece["length"] for piece in pieces[k + 1 :]) for k in range(len(pieces))]
+        steps, energy = self._turn(body, segments[0])
+        rest = [
+            sum(segment["length"] for segment in segments[k + 1 :]) for k in range(len(segments))
+        ]
         speed = 0.0
-        for k, piece in enumerate(pieces):
+        for k, segment in enumerate(segments):
             while True:
-                along, off, heading, bend = locate(piece, body.position)
-                if along >= piece["length"] - 1e-4:
+                along, off, heading, bend = locate(segment, body.position)
+                if along >= segment["length"] - 1e-4:
                     break
-                to_go = piece["length"] - along + rest[k]
+                to_go = segment["length"] - along + rest[k]
                 braking = sqrt(2.0 * SPEC.acceleration * max(to_go - 0.5 * speed * DT, 0.0))
                 last = min(SPEC.cruise, speed + SPEC.acceleration * DT, braking)
                 mean = min(0.5 * (speed + last), to_go / DT)
@@ -66,9 +68,9 @@ class PlainWorld:
         body.body_type = pymunk.Body.STATIC
         return steps, energy
 
-    def _turn(self, body, piece):
+    def _turn(self, body, segment):
         steps, spin = 0, 0.0
-        goal = locate(piece, body.position)[2]
+        goal = locate(segment, body.position)[2]
         ease = SPEC.turn_acceleration * DT
         while True:
             error = remainder(goal - body.angle, tau)
@@ -88,15 +90,15 @@ class PlainWorld:
             self.contacts += 1
 
 
-def locate(piece, position):
-    """Where on a piece of path: how far along, how far to the left, heading, curvature."""
-    dx, dy = position.x - piece["x"], position.y - piece["y"]
-    if piece["kind"] == LINE:
-        along = dx * piece["cos"] + dy * piece["sin"]
-        return along, dy * piece["cos"] - dx * piece["sin"], piece["angle"], 0.0
-    sense, radius = piece["sense"], piece["radius"]
+def locate(segment, position):
+    """Where on a segment of path: how far along, how far to the left, heading, curvature."""
+    dx, dy = position.x - segment["x"], position.y - segment["y"]
+    if segment["kind"] == LINE:
+        along = dx * segment["cos"] + dy * segment["sin"]
+        return along, dy * segment["cos"] - dx * segment["sin"], segment["angle"], 0.0
+    sense, radius = segment["sense"], segment["radius"]
     angle = atan2(dy, dx)
-    half = 0.5 * piece["length"] / radius
-    ahead = remainder(sense * (angle - piece["angle"]) - half, tau) + half
+    half = 0.5 * segment["length"] / radius
+    ahead = remainder(sense * (angle - segment["angle"]) - half, tau) + half
     heading = angle + sense * 0.5 * pi
     return radius * ahead, sense * (radius - hypot(dx, dy)), heading, sense / radius

@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from fleet.motion.catalogue import MOTIONS
+from fleet.motion.motions import MOTIONS
 from fleet.study import Task, run_tasks
 from fleet.study.ledger import reading, writing
 from fleet.study.loading import study_from

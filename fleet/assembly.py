@@ -13,7 +13,7 @@ from fleet.course import Course
 from fleet.crew import Fleet, Labels
 from fleet.energy import Battery
 from fleet.handler import Handler
-from fleet.motion.catalogue import MOTIONS
+from fleet.motion.motions import MOTIONS
 from fleet.observer import Audience, Observer
 from fleet.radio import Radio
 from fleet.radio.ideal import IdealRadio

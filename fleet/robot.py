@@ -10,6 +10,20 @@ from typing import Literal, Protocol
 from fleet.energy import Battery, ExtraPower, PowerModel
 from protocols.messages import Point, RobotId
 
+POSITIVE = (
+    "radius",
+    "mass",
+    "cruise",
+    "acceleration",
+    "turn_rate",
+    "turn_acceleration",
+    "capacity",
+    "motor",
+    "traction",
+    "scrub_onset",
+)
+"""What of a robot must be more than 0."""
+
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
@@ -31,14 +45,34 @@ class RobotSpec:
     capacity: float = 100.0  # [J] of the battery, full at the start
     power: PowerModel = field(default_factory=PowerModel)
     extra: ExtraPower = field(default_factory=ExtraPower)
+    inertia: float | None = None  # about the vertical axis [kg·m²]; None: a solid disc's
+    motor: float = 40.0  # the most that a wheel pushes with [N]
+    efficiency: float = 0.6  # of motors and gears: what of the battery's power arrives at wheels
+    regeneration: float = 0.0  # share of the power of braking wheels that is led back
+    windings: float = 0.014  # heat of a motor, times its force squared [W/N²]
+    traction: float = 0.7  # coefficient of friction between wheels and floor
+    scrub: float = 0.2  # torque against turning on the spot [N·m]
+    scrub_onset: float = 100.0  # turning per metre from which scrub is full [rad/m]
+    turning: float = 0.0  # power while it turns, besides what scrub takes [W]
+    payload: float = 0.0  # mass on top, unknown to its controller [kg]
+    error: float = 0.0  # how far true parameters are from what its controller believes, at most
 
     def __post_init__(self) -> None:
-        for name in (
-            "radius", "mass", "cruise", "acceleration", "turn_rate", "turn_acceleration", "capacity"
-        ):  # fmt: skip
+        for name in POSITIVE:
             value = getattr(self, name)
             if not 0.0 < value < inf:
                 raise ValueError(f"robot {name} is {value}; expected more than 0, and finite")
+        for name in ("windings", "scrub", "turning", "payload"):
+            value = getattr(self, name)
+            if not 0.0 <= value < inf:
+                raise ValueError(f"robot {name} is {value}; expected 0 or more, and finite")
+        for name, most in (("efficiency", 1.0), ("regeneration", 1.0), ("error", 0.5)):
+            value = getattr(self, name)
+            if not 0.0 <= value <= most or (name == "efficiency" and value == 0.0):
+                least = "more than 0" if name == "efficiency" else "0"
+                raise ValueError(f"robot {name} is {value}; expected {least} to {most}")
+        if self.inertia is not None and not 0.0 < self.inertia < inf:
+            raise ValueError(f"robot inertia is {self.inertia}; expected more than 0, and finite")
         if self.drive not in ("differential", "holonomic"):
             raise ValueError(
                 f"robot drive is {self.drive!r}; expected 'differential' or 'holonomic'"

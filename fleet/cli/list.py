@@ -16,7 +16,7 @@ def command() -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from fleet.motion.catalogue import MOTIONS
+    from fleet.motion.motions import MOTIONS
     from fleet.radio.catalogue import RADIOS
     from fleet.timing import TIMINGS
     from protocols.catalogue import METRICS, PROTOCOLS

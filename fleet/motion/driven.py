@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from fleet.energy import Battery
 from fleet.motion import Outcome, Trip
 from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
-from fleet.motion.law import fine_substeps, law_of
 from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
+from fleet.motion.params import fine_substeps, params_of
 from fleet.motion.planning import Planner, corners
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
@@ -72,7 +72,7 @@ class DrivenMotion:
             raise ValueError("motion traffic is 'free' without an engine; expected 'reserved'")
         self._arena = arena
         self._with_engine = engine
-        self._law = law_of(spec, self.options, sample_interval)
+        self._params = params_of(spec, self.options, sample_interval)
         self._fine = fine_substeps(spec, self.options)
         self._substeps = 1
         self._stopping: set[int] = set()  # slots of those that brake, to plan anew
@@ -107,7 +107,7 @@ class DrivenMotion:
         ladder = self.options.ladder(self.spec)
         self._planner = Planner(self._arena, self.spec.radius, points, ladder)
         self._engine = self._make_engine(robots) if self._with_engine else None
-        self._movers = Movers(self._law, self._planner.floor, self._engine)
+        self._movers = Movers(self._params, self._planner.floor, self._engine)
         self._facing = [robot.heading for robot in robots]  # [rad], not wrapped
 
     def _make_engine(self, robots: Sequence[Robot]) -> Engine:
@@ -127,10 +127,10 @@ class DrivenMotion:
         if options.belief == "straight" and not options.reachability:
             return straight
         plan = self._planner.plan(robot.id, robot.position, site)
-        if plan.pieces is None:
+        if plan.segments is None:
             return inf
         if options.belief == "driven":
-            return self._movers.outlook(robot.position, self._facing[robot.id], plan.pieces)
+            return self._movers.rollout(robot.position, self._facing[robot.id], plan.segments)
         if options.belief == "corrected":
             per_metre = self._eq1 if options.per_metre is None else options.per_metre
             return per_metre * plan.length + options.per_launch
@@ -145,25 +145,25 @@ class DrivenMotion:
         if robot.id in self._under_way:
             raise ValueError(f"robot {robot.id} is under way; expected one that rests")
         plan = self._planner.plan(robot.id, robot.position, site)
-        if plan.pieces is None:
+        if plan.segments is None:
             here, now = robot.position, self.now
             trip = Trip(robot.id, "no path", here, site, here, now, now, path=0.0, energy=0.0)
             self._over.append(trip)
             return
         slot = self._movers.depart(
             robot.id, robot.position, self._facing[robot.id], robot.battery.charge,
-            plan.pieces, self._step,
+            plan.segments, self._step,
         )  # fmt: skip
         self._planner.changed()
-        if self._watched and len(plan.pieces) > 1:
-            self._plans.append((robot.id, corners(plan.pieces)))
+        if self._watched and len(plan.segments) > 1:
+            self._plans.append((robot.id, corners(plan.segments)))
         self._under_way.add(robot.id)
         self._robots.append(robot)
         self._batteries.append(robot.battery)
         self._voyages.append(
             _Voyage(robot, slot, robot.position, site, plan.length, plan.goal, self._step)
         )
-        if not len(plan.pieces):
+        if not len(plan.segments):
             self._finish({len(self._voyages) - 1: "arrived"})
 
     def advance(self, until: float) -> Sequence[Trip]:
@@ -265,15 +265,15 @@ class DrivenMotion:
         else:
             stopped = self._movers.stopped(slot)
             plan = self._planner.plan_among(stopped, robot.id, robot.position, voyage.site)
-        if plan.pieces is None:
+        if plan.segments is None:
             return "stuck"
         voyage.goal = plan.goal
-        if not len(plan.pieces):
+        if not len(plan.segments):
             return "arrived"
-        self._movers.resume(slot, plan.pieces, self._step)
+        self._movers.resume(slot, plan.segments, self._step)
         self._planner.changed()
         if self._watched:
-            self._plans.append((robot.id, corners(plan.pieces)))
+            self._plans.append((robot.id, corners(plan.segments)))
         return None
 
     def _stand(self, voyage: _Voyage) -> None:
@@ -289,7 +289,7 @@ class DrivenMotion:
         """
         substeps = self._fine if self._stopping or self.options.traffic == "free" else 1
         if substeps != self._substeps:
-            self._law[0]["substeps"] = self._substeps = substeps
+            self._params[0]["substeps"] = self._substeps = substeps
 
     def _stop(self, voyage: _Voyage) -> None:
         """Let a robot brake on its path, to plan anew from there."""
@@ -364,5 +364,5 @@ class DrivenMotion:
             energy_ramps=account.spent_driving - self._eq1 * smooth,
             energy_pivots=account.spent_turning,
             energy_waiting=account.spent_waiting,
-            energy_contact=account.spent_adrift - self._eq1 * account.jostled,
+            energy_contact=account.spent_off_path - self._eq1 * account.jostled,
         )

@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
 from fleet.motion.kernels.direct import direct
-from fleet.motion.kernels.outlook import outlook
-from fleet.motion.kernels.records import MOVER, PIECE, Floor, Traffic
-from fleet.motion.kernels.run import command, embark, launch, report, run, sample, settle
+from fleet.motion.kernels.loop import command, embark, launch, report, run, sample, settle
+from fleet.motion.kernels.records import MOVER, SEGMENT, Floor, Traffic
+from fleet.motion.kernels.rollout import rollout
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
 from protocols.messages import Point, RobotId
 
 if TYPE_CHECKING:
     from fleet.motion.engine import Engine
 
-Path = NDArray[Any]  # (k,) PIECE
+Path = NDArray[Any]  # (k,) SEGMENT
 SLOW = 0.1  # [m/s] below this a robot counts as stopped
 
 
@@ -41,17 +41,17 @@ class Account(NamedTuple):
     spent_turning: float
     spent_driving: float
     spent_waiting: float
-    spent_adrift: float
+    spent_off_path: float
 
 
 class Movers:
     """Robots under way, each in a slot, which is used again; in order of departure."""
 
-    def __init__(self, law: NDArray[Any], floor: Floor, engine: Engine | None) -> None:
+    def __init__(self, params: NDArray[Any], floor: Floor, engine: Engine | None) -> None:
         self.traffic = Traffic(
-            law,
+            params,
             np.zeros(0, MOVER),
-            np.zeros((0, 16), PIECE),
+            np.zeros((0, 16), SEGMENT),
             np.zeros((0, 61, 2), np.float32),
             np.zeros((0, 4)),
             np.zeros(0, np.int64),
@@ -62,13 +62,13 @@ class Movers:
         self._floor = floor
         self._engine = engine
         self._wires = disconnected() if engine is None else engine.wires
-        self._embark, self._drive, self._outlook = direct(embark), direct(run), direct(outlook)
+        self._embark, self._drive, self._rollout = direct(embark), direct(run), direct(rollout)
         self._free: list[int] = []
         self._slots = np.zeros(0, np.int64)  # in order of departure
         self._count = 0  # of them in use
         self._found = np.zeros(0, np.int64)
-        self._ahead = np.zeros((1, 16), PIECE)
-        self._samples = np.zeros((1024 if law[0]["sample"] else 0, len(SAMPLE_FIELDS)))
+        self._ahead = np.zeros((1, 16), SEGMENT)
+        self._samples = np.zeros((1024 if params[0]["sample"] else 0, len(SAMPLE_FIELDS)))
         self._kept = 0  # rows of it in use
         self._full: list[NDArray[np.float64]] = []  # what did not fit in
         self._mixed = False  # whether rows are of several robots
@@ -83,32 +83,32 @@ class Movers:
         slot = self._free.pop()
         self._slots[self._count] = slot
         self._count += 1
-        self._more_pieces(len(path) + 1)
+        self._more_segments(len(path) + 1)
         needed = self._embark(
             self._floor, self.traffic, self._active, slot, robot, *position, heading, charge,
             path, step,
         )  # fmt: skip
-        if needed > self.traffic.tracks.shape[1]:
+        if needed > self.traffic.reservations.shape[1]:
             self._more_knots(needed)
             self.resume(slot, path, step)
         return slot
 
     def resume(self, slot: int, path: Path, step: int) -> None:
         """Send a robot that is under way along another ``path``."""
-        self._more_pieces(len(path) + 1)
+        self._more_segments(len(path) + 1)
         while True:
             needed = launch(self._floor, self.traffic, self._active, slot, path, step)
-            if needed <= self.traffic.tracks.shape[1]:
+            if needed <= self.traffic.reservations.shape[1]:
                 return
             self._more_knots(needed)
 
-    def outlook(self, position: Point, heading: float, path: Path) -> float:
+    def rollout(self, position: Point, heading: float, path: Path) -> float:
         """What driving along ``path`` from ``position`` [m] and ``heading`` [rad] drains [J]."""
         if len(path) + 1 > self._ahead.shape[1]:
-            self._ahead = np.zeros((1, 2 * len(path) + 2), PIECE)
+            self._ahead = np.zeros((1, 2 * len(path) + 2), SEGMENT)
         traffic = self.traffic
-        energy: float = self._outlook(
-            traffic.ghost, self._ahead, traffic.law, path, *position, heading
+        energy: float = self._rollout(
+            traffic.ghost, self._ahead, traffic.params, path, *position, heading
         )
         return energy
 
@@ -178,7 +178,7 @@ class Movers:
         """The robot brakes from ``step`` on."""
         while True:
             needed = stop_short(self._floor, self.traffic, slot, step)
-            if needed <= self.traffic.tracks.shape[1]:
+            if needed <= self.traffic.reservations.shape[1]:
                 return
             self._more_knots(needed)
 
@@ -205,19 +205,25 @@ class Movers:
     def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
         """The same as the compiled loop, with the engine stepped over its public interface."""
         assert self._engine is not None
-        movers, pieces, law = self.traffic.movers, self.traffic.pieces, self.traffic.law[0]
+        movers, segments, params = (
+            self.traffic.movers,
+            self.traffic.segments,
+            self.traffic.params[0],
+        )
         room = self._samples[self._kept :]
         kept = over = made = 0
         while made < steps and over == 0:
-            if law["sample"] and kept + self._count > len(room):
+            if params["sample"] and kept + self._count > len(room):
                 break
-            if command(movers, pieces, law, self._active, step + made) > 0:
-                self._engine.step(movers, self._active, float(law["dt"]), int(law["substeps"]))
-            over = settle(movers, law, self._active)
+            if command(movers, segments, params, self._active, step + made) > 0:
+                self._engine.step(
+                    movers, self._active, float(params["dt"]), int(params["substeps"])
+                )
+            over = settle(movers, params, self._active)
             self._engine.park_those_over(movers, self._active)
             made += 1
-            if law["sample"]:
-                kept = sample(movers, law, self._active, room, kept, step + made)
+            if params["sample"]:
+                kept = sample(movers, params, self._active, room, kept, step + made)
         report(movers, self._active, self.traffic.poses, self.traffic.over)
         return made, kept, over
 
@@ -229,7 +235,7 @@ class Movers:
     def _more_slots(self) -> None:
         have = len(self.traffic.movers)
         more = max(4, have)
-        by_slot = ("movers", "pieces", "tracks", "boxes", "near", "poses", "over")
+        by_slot = ("movers", "segments", "reservations", "boxes", "near", "poses", "over")
         self.traffic = self.traffic._replace(
             **{name: _longer(getattr(self.traffic, name), have + more) for name in by_slot}
         )
@@ -246,15 +252,19 @@ class Movers:
         if self._count > len(self._samples):
             self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
 
-    def _more_pieces(self, needed: int) -> None:
-        if needed > self.traffic.pieces.shape[1]:
+    def _more_segments(self, needed: int) -> None:
+        if needed > self.traffic.segments.shape[1]:
             self.traffic = self.traffic._replace(
-                pieces=_longer(self.traffic.pieces.swapaxes(0, 1), 2 * needed).swapaxes(0, 1).copy()
+                segments=_longer(self.traffic.segments.swapaxes(0, 1), 2 * needed)
+                .swapaxes(0, 1)
+                .copy()
             )
 
     def _more_knots(self, needed: int) -> None:
         self.traffic = self.traffic._replace(
-            tracks=_longer(self.traffic.tracks.swapaxes(0, 1), 2 * needed).swapaxes(0, 1).copy()
+            reservations=_longer(self.traffic.reservations.swapaxes(0, 1), 2 * needed)
+            .swapaxes(0, 1)
+            .copy()
         )
 
 

@@ -16,7 +16,7 @@ from fleet.motion.floor import lay_out
 from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.plan import NO_PATH, move_in, plan
-from fleet.motion.kernels.records import LINE, NOBODY, PIECE
+from fleet.motion.kernels.records import LINE, NOBODY, SEGMENT
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
 
@@ -26,15 +26,15 @@ CHORD = 0.2  # [rad] of an arc that a chord spans, at most
 class Plan(NamedTuple):
     """A way to a site, or that there is none."""
 
-    pieces: NDArray[Any] | None  # (k,) PIECE; None: no path
+    segments: NDArray[Any] | None  # (k,) SEGMENT; None: no path
     length: float  # [m]
     goal: Point  # where it ends: the site, or as near as there is room [m]
 
 
-def corners(pieces: NDArray[Any]) -> NDArray[np.float64]:
-    """A way of one or more PIECE as a polyline (k, 2) [m], arcs by chords."""
+def corners(segments: NDArray[Any]) -> NDArray[np.float64]:
+    """A way of one or more SEGMENT as a polyline (k, 2) [m], arcs by chords."""
     points: list[Point] = []
-    for kind, x, y, radius, angle, sense, along_x, along_y, length, *_ in pieces.tolist():
+    for kind, x, y, radius, angle, sense, along_x, along_y, length, *_ in segments.tolist():
         if kind == LINE:
             way = [(x, y), (x + length * along_x, y + length * along_y)]
         else:
@@ -83,13 +83,13 @@ class Planner:
             raise ValueError(f"the site of robot {robot} is {site}; expected two numbers [m]")
         while True:
             end, x, y, length = self._plan(
-                self.floor, robot, *position, *site, self._clearances, self._pieces
+                self.floor, robot, *position, *site, self._clearances, self._segments
             )
-            if end <= len(self._pieces):
+            if end <= len(self._segments):
                 break
             self._make_room(2 * end)
-        pieces = None if end == NO_PATH else self._raw[1:end].copy().view(PIECE)
-        found = Plan(pieces, float(length), (float(x), float(y)))
+        segments = None if end == NO_PATH else self._raw[1:end].copy().view(SEGMENT)
+        found = Plan(segments, float(length), (float(x), float(y)))
         self._known[robot, site] = found
         return found
 
@@ -105,7 +105,7 @@ class Planner:
         for other, _ in stopped:
             self._put(self.floor, around + other, nan, nan)
         self._known.clear()
-        return self.plan(robot, position, site) if found.pieces is None else found
+        return self.plan(robot, position, site) if found.segments is None else found
 
     def resting_place(self, robot: RobotId) -> Point:
         """Where the robot rests, or will [m]."""
@@ -121,7 +121,7 @@ class Planner:
         """Somebody's place has been changed by a kernel: forget the plans."""
         self._known.clear()
 
-    def _make_room(self, pieces: int) -> None:
+    def _make_room(self, segments: int) -> None:
         """For paths of so many; as plain bytes they are copied three times as fast."""
-        self._pieces = np.zeros(pieces, PIECE)
-        self._raw = self._pieces.view(f"V{PIECE.itemsize}")
+        self._segments = np.zeros(segments, SEGMENT)
+        self._raw = self._segments.view(f"V{SEGMENT.itemsize}")

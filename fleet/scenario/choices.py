@@ -7,7 +7,7 @@ from inspect import isclass
 from typing import Any
 
 from fleet.motion import Motion
-from fleet.motion.catalogue import MOTIONS
+from fleet.motion.motions import MOTIONS
 from fleet.radio.catalogue import RADIOS
 from fleet.radio.lossy import RadioSpec
 from fleet.robot import RobotSpec

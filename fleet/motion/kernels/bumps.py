@@ -15,17 +15,17 @@ def _enters(mover, x, y, dt, apart):
 
 
 @kernel
-def bumps(mover, movers, active, floor, law):
+def bumps(mover, movers, active, floor, params):
     """Whether ``mover`` would drive into a body in this step: one under way, or a parked one."""
-    apart = 2.0 * law.radius
+    apart = 2.0 * params.radius
     for k in range(len(active)):
         other = movers[active[k]]
-        if other.slot != mover.slot and _enters(mover, other.x, other.y, law.dt, apart):
+        if other.slot != mover.slot and _enters(mover, other.x, other.y, params.dt, apart):
             return True
     robots = (len(floor.discs) - len(floor.edges)) // 2
     for robot in range(robots):
         disc = floor.discs[robot]
-        if robot != mover.robot and _enters(mover, disc.x, disc.y, law.dt, apart):
+        if robot != mover.robot and _enters(mover, disc.x, disc.y, params.dt, apart):
             parked = True
             for k in range(len(active)):
                 parked = parked and movers[active[k]].robot != robot

@@ -19,67 +19,67 @@ NEAR = 1e-12  # [m], [rad], [s] that count as none
 
 
 @kernel
-def _stretch(piece, along, speed):
-    """The next stretch on a piece: (final speed, duration [s], how far it leads [m or rad]).
+def _stretch(segment, along, speed):
+    """The next stretch on a segment: (final speed, duration [s], how far it leads [m or rad]).
 
-    ``left`` is what there is to go on the piece. Speeding up all the way would end with the
+    ``left`` is what there is to go on the segment. Speeding up all the way would end with the
     square of the speed ``most`` higher; if that is more than the exit speed allows, speeding up
     must end halfway between the squares of both.
     """
-    left = piece.length - along
-    to_exit = 0.5 * (speed * speed - piece.exit * piece.exit) / piece.rate
+    left = segment.length - along
+    to_exit = 0.5 * (speed * speed - segment.exit * segment.exit) / segment.rate
     if to_exit >= left - NEAR:
-        last = piece.exit
+        last = segment.exit
         if to_exit > left + NEAR:  # it is too fast for what comes
-            last = math.sqrt(max(0.0, speed * speed - 2.0 * piece.rate * left))
-        return last, (speed - last) / piece.rate, left
-    if speed > piece.limit:
-        far = 0.5 * (speed * speed - piece.limit * piece.limit) / piece.rate
-        return piece.limit, (speed - piece.limit) / piece.rate, min(far, left)
-    if speed == piece.limit:
+            last = math.sqrt(max(0.0, speed * speed - 2.0 * segment.rate * left))
+        return last, (speed - last) / segment.rate, left
+    if speed > segment.limit:
+        far = 0.5 * (speed * speed - segment.limit * segment.limit) / segment.rate
+        return segment.limit, (speed - segment.limit) / segment.rate, min(far, left)
+    if speed == segment.limit:
         return speed, (left - to_exit) / speed, left - to_exit
-    most = speed * speed + 2.0 * piece.rate * left
-    square = min(most, 0.5 * (most + piece.exit * piece.exit))
-    if square > piece.limit * piece.limit:
-        last = piece.limit
-        far = 0.5 * (last * last - speed * speed) / piece.rate
+    most = speed * speed + 2.0 * segment.rate * left
+    square = min(most, 0.5 * (most + segment.exit * segment.exit))
+    if square > segment.limit * segment.limit:
+        last = segment.limit
+        far = 0.5 * (last * last - speed * speed) / segment.rate
     else:
         last = math.sqrt(square)
-        far = left if square == most else 0.5 * (square - speed * speed) / piece.rate
-    return last, (last - speed) / piece.rate, far
+        far = left if square == most else 0.5 * (square - speed * speed) / segment.rate
+    return last, (last - speed) / segment.rate, far
 
 
 @kernel
-def _throughout(piece, along, speed, time):
+def _throughout(segment, along, speed, time):
     """The final speed if one stretch lasts for ``time`` [s], which is so in most steps and found
     without dividing; negative if another begins before.
     """
-    room, change = piece.rate * (piece.length - along), piece.rate * time
-    spare = room - 0.5 * (speed * speed - piece.exit * piece.exit)
-    if spare <= piece.rate * NEAR:
-        return speed - change if speed - change >= piece.exit else -1.0
-    if speed == piece.limit:
+    room, change = segment.rate * (segment.length - along), segment.rate * time
+    spare = room - 0.5 * (speed * speed - segment.exit * segment.exit)
+    if spare <= segment.rate * NEAR:
+        return speed - change if speed - change >= segment.exit else -1.0
+    if speed == segment.limit:
         return speed if change * speed < spare else -1.0
     last = speed + change
     spare = min(room, spare - 0.5 * (last * last - speed * speed))  # if it brakes from there
-    return last if last <= piece.limit and 0.5 * change * (speed + last) <= spare else -1.0
+    return last if last <= segment.limit and 0.5 * change * (speed + last) <= spare else -1.0
 
 
 @kernel
-def _energy(piece, speed, last, time):
+def _energy(segment, speed, last, time):
     """What a stretch of ``time`` [s] drains [J]: the integral of the power, and kinetic energy."""
     square = (speed * speed + speed * last + last * last) / 3.0
-    power = piece.quadratic * square + piece.linear * 0.5 * (speed + last) + piece.constant
-    return power * time + 0.5 * piece.inertia * max(0.0, last * last - speed * speed)
+    power = segment.quadratic * square + segment.linear * 0.5 * (speed + last) + segment.constant
+    return power * time + 0.5 * segment.inertia * max(0.0, last * last - speed * speed)
 
 
 @kernel
-def _lasting(piece, speed, last, time, charge):
+def _lasting(segment, speed, last, time, charge):
     """After what share of a stretch the ``charge`` [J] is used up."""
     low, high = 0.0, 1.0
     for _ in range(60):
         share = 0.5 * (low + high)
-        if _energy(piece, speed, speed + share * (last - speed), share * time) > charge:
+        if _energy(segment, speed, speed + share * (last - speed), share * time) > charge:
             high = share
         else:
             low = share
@@ -101,33 +101,33 @@ def pay(mover, energy):
 
 
 @kernel
-def go_on(mover, pieces, time):
+def go_on(mover, segments, time):
     """Move ``mover`` along its path for ``time`` [s], and drain it."""
     while time > NEAR:
-        piece = pieces[mover.slot, mover.piece]
-        if piece.length - mover.along <= NEAR:
-            if mover.piece + 1 == mover.count:
+        segment = segments[mover.slot, mover.segment]
+        if segment.length - mover.along <= NEAR:
+            if mover.segment + 1 == mover.count:
                 mover.phase, mover.speed = ARRIVED, 0.0
                 return
-            mover.piece += 1
+            mover.segment += 1
             mover.along = 0.0
             continue
-        last, lasts = _throughout(piece, mover.along, mover.speed, time), time
+        last, lasts = _throughout(segment, mover.along, mover.speed, time), time
         far = 0.5 * (mover.speed + last) * time
         if last < 0.0:
-            last, lasts, far = _stretch(piece, mover.along, mover.speed)
+            last, lasts, far = _stretch(segment, mover.along, mover.speed)
             if lasts > time:
                 last = mover.speed + time / lasts * (last - mover.speed)
                 lasts, far = time, 0.5 * (mover.speed + last) * time
-        energy = _energy(piece, mover.speed, last, lasts)
+        energy = _energy(segment, mover.speed, last, lasts)
         charge = mover.held - mover.spent
         if energy > charge:
-            share = _lasting(piece, mover.speed, last, lasts, charge)
+            share = _lasting(segment, mover.speed, last, lasts, charge)
             last = mover.speed + share * (last - mover.speed)
             far = 0.5 * (mover.speed + last) * share * lasts
         energy = pay(mover, energy)
         mover.along += far
-        if piece.kind == TURN:
+        if segment.kind == TURN:
             mover.spent_turning += energy
         else:
             mover.spent_driving += energy
@@ -137,32 +137,34 @@ def go_on(mover, pieces, time):
             return
         mover.speed = last
         time -= lasts
-    left = pieces[mover.slot, mover.piece].length - mover.along
-    if mover.piece + 1 == mover.count and left <= NEAR:
+    left = segments[mover.slot, mover.segment].length - mover.along
+    if mover.segment + 1 == mover.count and left <= NEAR:
         mover.phase, mover.speed = ARRIVED, 0.0
 
 
 @kernel
-def position_at(piece, along):
-    """The point [m] of a piece of path that is ``along`` [m or rad] from its start."""
-    if piece.kind == LINE:
-        return piece.x + along * piece.cos, piece.y + along * piece.sin
-    if piece.kind == ARC:
-        angle = piece.angle + piece.sense * along / piece.radius
-        return piece.x + piece.radius * math.cos(angle), piece.y + piece.radius * math.sin(angle)
-    return piece.x, piece.y
+def position_at(segment, along):
+    """The point [m] of a segment of path that is ``along`` [m or rad] from its start."""
+    if segment.kind == LINE:
+        return segment.x + along * segment.cos, segment.y + along * segment.sin
+    if segment.kind == ARC:
+        angle = segment.angle + segment.sense * along / segment.radius
+        return segment.x + segment.radius * math.cos(angle), segment.y + segment.radius * math.sin(
+            angle
+        )
+    return segment.x, segment.y
 
 
 @kernel
-def drive(mover, pieces, law, dt):
+def drive(mover, segments, params, dt):
     """Let ``mover`` go on for ``dt`` [s], and command the mean velocity that takes it there."""
-    go_on(mover, pieces, dt)
-    piece = pieces[mover.slot, mover.piece]
-    x, y = position_at(piece, mover.along)
+    go_on(mover, segments, dt)
+    segment = segments[mover.slot, mover.segment]
+    x, y = position_at(segment, mover.along)
     pace = 1.0 / dt
     mover.vx, mover.vy, mover.spin = (x - mover.x) * pace, (y - mover.y) * pace, 0.0
-    if not law.holonomic:
-        facing = heading_at(piece, mover.along) - mover.astern
+    if not params.holonomic:
+        facing = heading_at(segment, mover.along) - mover.astern
         mover.spin = wrapped(facing - mover.heading) * pace
 
 
@@ -186,7 +188,7 @@ def coast(mover, dt, times):
 
 
 @kernel
-def wait(mover, law):
+def wait(mover, params):
     """Let ``mover`` stand for a step; it may cost idle power."""
     mover.waited += 1
-    mover.spent_waiting += pay(mover, law.idle * law.dt)
+    mover.spent_waiting += pay(mover, params.idle * params.dt)

@@ -63,27 +63,29 @@ def _unsqueeze(floor, saved, count):
 
 
 @kernel
-def _disc_hit(piece, disc, radius):
-    """Whether a piece of path comes nearer to a disc's centre than ``radius`` [m]."""
-    if piece.kind == LINE:
-        bx, by = piece.x + piece.length * piece.cos, piece.y + piece.length * piece.sin
-        return to_segment(disc.x, disc.y, piece.x, piece.y, bx, by) < radius - GRAZE
-    sweep = piece.length / piece.radius
-    first = piece.angle if piece.sense > 0.0 else piece.angle - sweep
-    return to_arc(disc.x, disc.y, piece.x, piece.y, piece.radius, first, sweep) < radius - GRAZE
+def _disc_hit(segment, disc, radius):
+    """Whether a segment of path comes nearer to a disc's centre than ``radius`` [m]."""
+    if segment.kind == LINE:
+        bx, by = segment.x + segment.length * segment.cos, segment.y + segment.length * segment.sin
+        return to_segment(disc.x, disc.y, segment.x, segment.y, bx, by) < radius - GRAZE
+    sweep = segment.length / segment.radius
+    first = segment.angle if segment.sense > 0.0 else segment.angle - sweep
+    return (
+        to_arc(disc.x, disc.y, segment.x, segment.y, segment.radius, first, sweep) < radius - GRAZE
+    )
 
 
 @kernel
-def _edge_hit(piece, edge, radius):
-    """Whether a piece of path comes nearer to a polygon's side than ``radius`` [m]."""
-    if piece.kind == LINE:
-        bx, by = piece.x + piece.length * piece.cos, piece.y + piece.length * piece.sin
-        away = between_segments(piece.x, piece.y, bx, by, edge.ax, edge.ay, edge.bx, edge.by)
+def _edge_hit(segment, edge, radius):
+    """Whether a segment of path comes nearer to a polygon's side than ``radius`` [m]."""
+    if segment.kind == LINE:
+        bx, by = segment.x + segment.length * segment.cos, segment.y + segment.length * segment.sin
+        away = between_segments(segment.x, segment.y, bx, by, edge.ax, edge.ay, edge.bx, edge.by)
         return away < radius - GRAZE
-    sweep = piece.length / piece.radius
-    first = piece.angle if piece.sense > 0.0 else piece.angle - sweep
+    sweep = segment.length / segment.radius
+    first = segment.angle if segment.sense > 0.0 else segment.angle - sweep
     away = arc_to_segment(
-        piece.x, piece.y, piece.radius, first, sweep, edge.ax, edge.ay, edge.bx, edge.by
+        segment.x, segment.y, segment.radius, first, sweep, edge.ax, edge.ay, edge.bx, edge.by
     )
     return away < radius - GRAZE
 
@@ -99,8 +101,8 @@ def _avoid_disc(floor, disc, known, count):
 
 
 @kernel
-def _obstruct(floor, me, pieces, first, last, clearance, known, count):
-    """Add what the path pieces[first:last] runs into to ``known``, of which there are ``count``.
+def _obstruct(floor, me, segments, first, last, clearance, known, count):
+    """Add what the path segments[first:last] runs into to ``known``, of which there are ``count``.
 
     Discs come first, edges are numbered on from them. Returns the new count.
     """
@@ -108,21 +110,24 @@ def _obstruct(floor, me, pieces, first, last, clearance, known, count):
     margin = radius + clearance
     offset = len(floor.discs)
     for p in range(first, last):
-        piece = pieces[p]
-        bx, by, reach = piece.x, piece.y, piece.radius
-        if piece.kind == LINE:
-            bx, by = piece.x + piece.length * piece.cos, piece.y + piece.length * piece.sin
+        segment = segments[p]
+        bx, by, reach = segment.x, segment.y, segment.radius
+        if segment.kind == LINE:
+            bx, by = (
+                segment.x + segment.length * segment.cos,
+                segment.y + segment.length * segment.sin,
+            )
             reach = 0.0
-        near = discs_near(floor, me, piece.x, piece.y, bx, by, reach + radius + margin)
+        near = discs_near(floor, me, segment.x, segment.y, bx, by, reach + radius + margin)
         for k in range(near):
             disc = floor.near[k]
-            if _disc_hit(piece, floor.discs[disc], floor.discs[disc].core + margin):
+            if _disc_hit(segment, floor.discs[disc], floor.discs[disc].core + margin):
                 count = _avoid_disc(floor, disc, known, count)
-        near = edges_near(floor, piece.x, piece.y, bx, by, reach + margin, 0)
+        near = edges_near(floor, segment.x, segment.y, bx, by, reach + margin, 0)
         for k in range(near):
             which = floor.near[k]
             edge = floor.edges[which]
-            if not floor.marks[offset + which] and _edge_hit(piece, edge, edge.core + margin):
+            if not floor.marks[offset + which] and _edge_hit(segment, edge, edge.core + margin):
                 count = _avoid_disc(floor, offset + which, known, count)
                 count = _avoid_disc(floor, edge.a, known, count)
                 count = _avoid_disc(floor, edge.b, known, count)
@@ -153,19 +158,19 @@ def _among(floor, sx, sy, gx, gy, clearance, known, count):
 
 
 @kernel
-def _shortest_path(floor, me, sx, sy, gx, gy, clearance, box, pieces, first):
-    """The path from s to g [m], written into ``pieces`` from ``first`` on: its end there.
+def _shortest_path(floor, me, sx, sy, gx, gy, clearance, box, segments, first):
+    """The path from s to g [m], written into ``segments`` from ``first`` on: its end there.
 
-    NO_PATH if there is none; more than ``len(pieces)`` if there is too little room.
+    NO_PATH if there is none; more than ``len(segments)`` if there is too little room.
     """
     if math.hypot(gx - sx, gy - sy) < TOUCH:
         return first
-    lay_line(pieces[first], sx, sy, gx, gy)
+    lay_line(segments[first], sx, sy, gx, gy)
     last = first + 1
     known = floor.near[len(floor.near) // 2 :]
     found, count = 0, 0
     while True:
-        count = _obstruct(floor, me, pieces, first, last, clearance, known, found)
+        count = _obstruct(floor, me, segments, first, last, clearance, known, found)
         if count == found:
             break
         found = count
@@ -174,8 +179,8 @@ def _shortest_path(floor, me, sx, sy, gx, gy, clearance, box, pieces, first):
         if goal == NOBODY:
             last = NO_PATH
             break
-        last = lay(circles, nodes, goal, pieces, first)
-        if last > len(pieces):
+        last = lay(circles, nodes, goal, segments, first)
+        if last > len(segments):
             break
     for k in range(found):
         floor.marks[known[k]] = False
@@ -191,13 +196,13 @@ def plan(
     x: float,
     y: float,
     clearances: FloatArray,
-    pieces: Records,
+    segments: Records,
 ) -> tuple[int, float, float, float]:
     """The path of robot ``me`` from where it stands, s [m], to the site (x, y) [m].
 
-    ``clearances``: (k,) to try in turn [m]. ``pieces``: (room,) PIECE; lines and arcs are
+    ``clearances``: (k,) to try in turn [m]. ``segments``: (room,) SEGMENT; lines and arcs are
     written from 1 on, the turn that comes first is left to the drive. Returns
-    (end of the path in ``pieces``, goal x, goal y, length [m]); the end is NO_PATH if there is
+    (end of the path in ``segments``, goal x, goal y, length [m]); the end is NO_PATH if there is
     no path, and more than ``room`` if that is too little.
     """
     grid = floor.grid[0]
@@ -210,13 +215,13 @@ def plan(
         squeezed = _squeeze(floor, me, sx, sy, clearances[k], saved)
         exists, gx, gy = free_point(floor, me, sx, sy, x, y, clearances[k], box)
         if exists:
-            end = _shortest_path(floor, me, sx, sy, gx, gy, clearances[k], box, pieces, 1)
+            end = _shortest_path(floor, me, sx, sy, gx, gy, clearances[k], box, segments, 1)
         _unsqueeze(floor, saved, squeezed)
         if end != NO_PATH:
             break
     length = 0.0
-    for k in range(1, min(end, len(pieces))):
-        length += pieces[k].length
+    for k in range(1, min(end, len(segments))):
+        length += segments[k].length
     return end, gx, gy, length
 
 

@@ -19,7 +19,7 @@ IntArray: TypeAlias = NDArray[np.int64]
 NOBODY = -1  # no robot, no disc, the end of a list
 
 TURN, LINE, ARC = 0, 1, 2
-"""Kinds of pieces that a path is made of: on the spot, straight, along a circle."""
+"""Kinds of segments that a path is made of: on the spot, straight, along a circle."""
 
 WAITING, DRIVING, ARRIVED, EMPTY, LOST, TOUCHED = 0, 1, 2, 3, 4, 5
 """Phases of a trip. From ARRIVED on the kernels leave it alone until Python has seen to it:
@@ -66,7 +66,7 @@ GRID = record_type(
     ]
 )
 
-PIECE = record_type(
+SEGMENT = record_type(
     [
         ("kind", "i8"),
         ("x", "f8"),  # where it starts; of an arc, the centre [m]
@@ -87,7 +87,7 @@ PIECE = record_type(
         ("inertia", "f8"),  # kinetic energy that is paid: inertia·v²/2 [J]
     ]
 )
-"""A piece of a path. What the drive has to know of the robot's build is written here, so that
+"""A segment of a path. What the drive has to know of the robot's build is written here, so that
 turning and driving, wheels and bodies are all the same to it."""
 
 MOVER = record_type(
@@ -98,11 +98,11 @@ MOVER = record_type(
         ("phase", "i8"),
         ("start", "i8"),  # the step before which it sets off
         ("awake", "i8"),  # 0: its body is parked; 2: it has just set off
-        ("adrift", "i8"),  # 1: pushed off its path; 2: and turning towards it
+        ("off_path", "i8"),  # 1: pushed off its path; 2: and turning towards it
         ("touching", "i8"),  # the engine did not let it have the commanded velocity
-        ("count", "i8"),  # pieces of its path
-        ("piece", "i8"),  # the one it is on
-        ("along", "f8"),  # how far on that piece [m or rad]
+        ("count", "i8"),  # segments of its path
+        ("segment", "i8"),  # the one it is on
+        ("along", "f8"),  # how far on that segment [m or rad]
         ("speed", "f8"),  # [m/s or rad/s]
         ("x", "f8"),  # [m]
         ("y", "f8"),
@@ -121,12 +121,12 @@ MOVER = record_type(
         ("departed", "i8"),  # the step before which it was sent
         ("waited", "i8"),  # steps
         ("contacts", "i8"),
-        ("jostled", "f8"),  # the part of its path that was driven adrift [m]
+        ("jostled", "f8"),  # the part of its path that was driven off it [m]
         ("spent_turning", "f8"),  # the parts of what was spent, each kept by itself [J]
         ("spent_driving", "f8"),
         ("spent_waiting", "f8"),
-        ("spent_adrift", "f8"),
-        ("best", "f8"),  # adrift: the least that was left to go [m]
+        ("spent_off_path", "f8"),
+        ("best", "f8"),  # off its path: the least that was left to go [m]
         ("since", "i8"),  # steps since that shrank
         # its track
         ("first", "i8"),  # tick of its first knot
@@ -135,7 +135,7 @@ MOVER = record_type(
 )
 """A robot under way."""
 
-LAW = record_type(
+PARAMS = record_type(
     [
         ("dt", "f8"),  # of a step [s]
         ("radius", "f8"),  # of a robot [m]
@@ -184,11 +184,11 @@ class Floor(NamedTuple):
 class Traffic(NamedTuple):
     """Everybody under way, by slot."""
 
-    law: Records  # (1,) LAW
+    params: Records  # (1,) PARAMS
     movers: Records  # (slots,) MOVER
-    pieces: Records  # (slots, room) PIECE; the first is the turn on the spot
-    tracks: NDArray[np.float32]  # (slots, knots, 2) [m]
-    boxes: FloatArray  # (slots, 4) bounds of the tracks: least x, y, greatest x, y [m]
+    segments: Records  # (slots, room) SEGMENT; the first is the turn on the spot
+    reservations: NDArray[np.float32]  # (slots, knots, 2) [m]
+    boxes: FloatArray  # (slots, 4) bounds of the reservations: least x, y, greatest x, y [m]
     near: IntArray  # (slots,) work space
     ghost: Records  # (1,) MOVER, work space
     poses: FloatArray  # (slots, 4) x, y, heading, charge [m, m, rad, J]

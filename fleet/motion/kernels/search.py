@@ -17,7 +17,7 @@ from fleet.motion.kernels.tangents import GRAZE, arc_is_free, free_sweep, line_i
 from protocols.compiled import kernel
 
 START, GOAL = 0, 1  # circles of radius 0
-SHORT = 1e-8  # [m] pieces below this are left out
+SHORT = 1e-8  # [m] segments below this are left out
 
 NODE = record_type(
     [
@@ -213,11 +213,11 @@ def _spread(circles, count, box, nodes, at, shut, keys, items, made, waiting):
 
 
 @kernel
-def lay(circles, nodes, goal, pieces, first):
-    """Write the way to node ``goal`` as lines and arcs into ``pieces`` from ``first`` on.
+def lay(circles, nodes, goal, segments, first):
+    """Write the way to node ``goal`` as lines and arcs into ``segments`` from ``first`` on.
 
-    Returns the end of the path; more than ``len(pieces)`` if there is too little room, then
-    ``pieces`` holds only some of it.
+    Returns the end of the path; more than ``len(segments)`` if there is too little room, then
+    ``segments`` holds only some of it.
     """
     steps = 0
     at = goal
@@ -235,26 +235,31 @@ def lay(circles, nodes, goal, pieces, first):
         parent = nodes[node.parent]
         circle = circles[parent.circle]
         if circle.radius * node.sweep > SHORT:
-            if count < len(pieces):
-                piece = pieces[count]
-                piece.kind, piece.x, piece.y, piece.radius = ARC, circle.x, circle.y, circle.radius
-                piece.angle, piece.sense = parent.arrival, float(parent.side)
-                piece.length = circle.radius * node.sweep
+            if count < len(segments):
+                segment = segments[count]
+                segment.kind, segment.x, segment.y, segment.radius = (
+                    ARC,
+                    circle.x,
+                    circle.y,
+                    circle.radius,
+                )
+                segment.angle, segment.sense = parent.arrival, float(parent.side)
+                segment.length = circle.radius * node.sweep
             count += 1
         x = circle.x + circle.radius * math.cos(node.departure)
         y = circle.y + circle.radius * math.sin(node.departure)
         if math.hypot(node.x - x, node.y - y) > SHORT:
-            if count < len(pieces):
-                lay_line(pieces[count], x, y, node.x, node.y)
+            if count < len(segments):
+                lay_line(segments[count], x, y, node.x, node.y)
             count += 1
     return count
 
 
 @kernel
-def lay_line(piece, ax, ay, bx, by):
-    """Make ``piece`` the straight line from a to b [m]."""
+def lay_line(segment, ax, ay, bx, by):
+    """Make ``segment`` the straight line from a to b [m]."""
     dx, dy = bx - ax, by - ay
-    piece.kind, piece.x, piece.y, piece.radius = LINE, ax, ay, 0.0
-    piece.length = math.hypot(dx, dy)
-    piece.angle = math.atan2(dy, dx)
-    piece.cos, piece.sin = dx / piece.length, dy / piece.length
+    segment.kind, segment.x, segment.y, segment.radius = LINE, ax, ay, 0.0
+    segment.length = math.hypot(dx, dy)
+    segment.angle = math.atan2(dy, dx)
+    segment.cos, segment.sin = dx / segment.length, dy / segment.length

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from fleet.cli import main
-from fleet.motion.catalogue import MOTIONS
+from fleet.motion.motions import MOTIONS
 from fleet.radio.catalogue import RADIOS
 from fleet.results import Summary
 from fleet.timing import TIMINGS

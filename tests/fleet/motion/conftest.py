@@ -70,27 +70,27 @@ def crowd(driving):
 
 @pytest.fixture(scope="session")
 def trace():
-    """trace(pieces, step): points (k, 2) along a path, ``step`` [m] apart at most."""
+    """trace(segments, step): points (k, 2) along a path, ``step`` [m] apart at most."""
 
-    def points_of(piece, step):
-        count = max(2, int(piece["length"] / step) + 2)
-        along = np.linspace(0.0, piece["length"], count)
-        if piece["kind"] == LINE:
+    def points_of(segment, step):
+        count = max(2, int(segment["length"] / step) + 2)
+        along = np.linspace(0.0, segment["length"], count)
+        if segment["kind"] == LINE:
             return np.column_stack(
                 [
-                    piece["x"] + along * cos(piece["angle"]),
-                    piece["y"] + along * sin(piece["angle"]),
+                    segment["x"] + along * cos(segment["angle"]),
+                    segment["y"] + along * sin(segment["angle"]),
                 ]
             )
-        angle = piece["angle"] + piece["sense"] * along / piece["radius"]
+        angle = segment["angle"] + segment["sense"] * along / segment["radius"]
         return np.column_stack(
             [
-                piece["x"] + piece["radius"] * np.cos(angle),
-                piece["y"] + piece["radius"] * np.sin(angle),
+                segment["x"] + segment["radius"] * np.cos(angle),
+                segment["y"] + segment["radius"] * np.sin(angle),
             ]
         )
 
-    def make(pieces, step=0.01):
-        return np.vstack([points_of(piece, step) for piece in pieces])
+    def make(segments, step=0.01):
+        return np.vstack([points_of(segment, step) for segment in segments])
 
     return make

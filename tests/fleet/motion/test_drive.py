@@ -67,16 +67,16 @@ def test_a_straight_trip_is_a_pivot_and_a_trapezoid(driving, start, site, headin
     assert 0.0 <= trip.ended - trip.departed - time < 1.0 / 60.0 + 1e-6
 
 
-def slow_integral(pieces, spec, ds=2e-4):
-    """Energy and time of driving along pieces, by a forward and a backward pass over samples."""
+def slow_integral(segments, spec, ds=2e-4):
+    """Energy and time of driving along segments, by a forward and a backward pass over samples."""
     limit, count = [], []
-    for piece in pieces:
+    for segment in segments:
         top = spec.cruise
-        if piece["kind"] == ARC:
-            top = min(top, 0.95 * spec.turn_rate * piece["radius"])
-        count.append(max(2, int(piece["length"] / ds)))
+        if segment["kind"] == ARC:
+            top = min(top, 0.95 * spec.turn_rate * segment["radius"])
+        count.append(max(2, int(segment["length"] / ds)))
         limit += [top] * count[-1]
-    steps = np.repeat([p["length"] / n for p, n in zip(pieces, count, strict=True)], count)
+    steps = np.repeat([p["length"] / n for p, n in zip(segments, count, strict=True)], count)
     square = np.array([*limit, limit[-1]]) ** 2
     square[1:-1] = np.minimum(square[1:-1], square[:-2])
     square[0] = square[-1] = 0.0
@@ -104,10 +104,10 @@ def test_a_trip_around_others_costs_what_a_slow_integrator_says(crowd, preset, s
         plan = motion._planner.plan(robot.id, robot.position, site)
         motion.depart(robot, site)
         (trip,) = motion.advance(inf)
-        if plan.pieces is None or trip.path < 0.01:
+        if plan.segments is None or trip.path < 0.01:
             continue
-        arcs += sum(piece["kind"] == ARC for piece in plan.pieces)
-        energy, _ = slow_integral(plan.pieces, spec)
+        arcs += sum(segment["kind"] == ARC for segment in plan.segments)
+        energy, _ = slow_integral(plan.segments, spec)
         assert trip.energy - trip.energy_pivots == pytest.approx(energy, rel=2e-3)
         assert trip.path == pytest.approx(plan.length, abs=1e-6)
     assert arcs
@@ -248,6 +248,6 @@ def test_lines_and_arcs_are_what_plans_are_made_of(crowd):
     kinds = set()
     for robot in robots[:30]:
         plan = motion._planner.plan(robot.id, robot.position, (5.0, 5.0))
-        kinds |= {int(piece["kind"]) for piece in plan.pieces}
+        kinds |= {int(segment["kind"]) for segment in plan.segments}
     assert kinds == {LINE, ARC}
     assert hypot(*np.subtract(plan.goal, (5.0, 5.0))) < 0.5

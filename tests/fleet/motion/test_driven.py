@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fleet.energy import ExtraPower
-from fleet.motion.catalogue import MOTIONS
 from fleet.motion.driven import DrivenMotion
+from fleet.motion.motions import MOTIONS
 from fleet.motion.options import DriveOptions
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
@@ -258,7 +258,7 @@ def test_long_trips_and_many_pieces_fit(driving):
     slalom = [(x, y) for k, x in enumerate(range(10, 200, 8)) for y in columns[k % 2]]
     motion, robots = driving([(1.0, 2.0), *slalom], SPEC, arena)
     plan = motion._planner.plan(0, (1.0, 2.0), (199.0, 2.0))
-    assert len(plan.pieces) > 32
+    assert len(plan.segments) > 32
     motion.depart(robots[0], (199.0, 2.0))
     motion.depart(robots[1], (8.0, 1.0))
     trips = []

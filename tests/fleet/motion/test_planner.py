@@ -122,11 +122,11 @@ def free_spot(scene, rng):
             return point
 
 
-def heading(piece, along):
-    """The direction of a piece of path."""
-    if piece["kind"] == LINE:
-        return piece["angle"]
-    return piece["angle"] + piece["sense"] * (along / piece["radius"] + 0.5 * pi)
+def heading(segment, along):
+    """The direction of a segment of path."""
+    if segment["kind"] == LINE:
+        return segment["angle"]
+    return segment["angle"] + segment["sense"] * (along / segment["radius"] + 0.5 * pi)
 
 
 def draw(seed, count, radius, arena):
@@ -141,12 +141,12 @@ def draw(seed, count, radius, arena):
 
 def check(scene, plan, start, goal, trace, slack=0.0):
     """The path leads from start to goal without a gap or a kink, and clear of everything."""
-    points = trace(plan.pieces, 0.005)
+    points = trace(plan.segments, 0.005)
     assert dist(points[0], start) < 1e-6
     assert dist(points[-1], goal) < 1e-6
-    for piece, after in pairwise(plan.pieces):
-        assert dist(trace([piece])[-1], trace([after])[0]) < 1e-6
-        assert cos(heading(piece, piece["length"]) - heading(after, 0.0)) > cos(1e-3)
+    for segment, after in pairwise(plan.segments):
+        assert dist(trace([segment])[-1], trace([after])[0]) < 1e-6
+        assert cos(heading(segment, segment["length"]) - heading(after, 0.0)) > cos(1e-3)
     assert scene.slack(points).min() > -1e-6 - slack
     lengths = np.hypot(*np.diff(points, axis=0).T).sum()
     assert plan.length == pytest.approx(lengths, rel=1e-3, abs=1e-6)
@@ -162,7 +162,7 @@ def test_no_sampled_path_is_shorter_and_none_is_found_where_there_is_none(
     scene, planner, start, goal = draw(seed, count, radius, arena)
     plan = planner.plan(0, start, goal)
     shortest = scene.shortest(start, goal)
-    if plan.pieces is None:
+    if plan.segments is None:
         assert shortest == inf
         return
     assert plan.goal == goal
@@ -180,7 +180,7 @@ def test_no_sampled_path_is_shorter_and_none_is_found_where_there_is_none(
 def test_paths_in_a_crowd_keep_their_clearance(trace, seed, radius, arena):
     scene, planner, start, goal = draw(seed, 60, radius, arena)
     plan = planner.plan(0, start, goal)
-    if plan.pieces is not None:
+    if plan.segments is not None:
         check(scene, plan, start, goal, trace)
 
 
@@ -208,14 +208,14 @@ def test_a_robot_leaves_when_it_is_touched(trace):
     scene = Scene(Arena(), 0.1, points, 0, clearance=0.0)
     for site in ((5.0, 1.0), (9.0, 9.0), (1.0, 5.0), (5.0 + 0.1, 5.0 - 0.2)):
         plan = planner.plan(0, points[0], site)
-        assert plan.pieces is not None
+        assert plan.segments is not None
         check(scene, plan, points[0], plan.goal, trace, slack=1e-6)
 
 
 def test_a_robot_that_is_walled_in_has_no_path():
     ring = [(5.0 + 0.41 * cos(k * pi / 6), 5.0 + 0.41 * sin(k * pi / 6)) for k in range(12)]
     planner = Planner(Arena(), 0.1, [(5.0, 5.0), *ring], (CLEARANCE, 0.001))
-    assert planner.plan(0, (5.0, 5.0), (8.0, 8.0)).pieces is None
+    assert planner.plan(0, (5.0, 5.0), (8.0, 8.0)).segments is None
     assert planner.plan(0, (5.0, 5.0), (5.1, 5.0)).length == pytest.approx(0.1)
 
 
@@ -223,7 +223,7 @@ def test_a_narrow_gap_is_taken_with_less_clearance():
     wall = [(5.0, 0.1 + 0.21 * k) for k in range(47)]
     del wall[24]
     points = [(4.0, 5.0), *wall]
-    assert Planner(Arena(), 0.1, points, (0.03,)).plan(0, (4.0, 5.0), (6.0, 5.0)).pieces is None
+    assert Planner(Arena(), 0.1, points, (0.03,)).plan(0, (4.0, 5.0), (6.0, 5.0)).segments is None
     plan = Planner(Arena(), 0.1, points, (0.03, 0.001)).plan(0, (4.0, 5.0), (6.0, 5.0))
     assert plan.length == pytest.approx(2.0, abs=0.1)
 
@@ -243,7 +243,7 @@ def test_a_covered_site_is_served_from_the_nearest_free_point(seed, arena, near_
     points[0] = start
     planner = Planner(arena, radius, [tuple(p) for p in points.tolist()], (CLEARANCE,))
     plan = planner.plan(0, start, site)
-    if plan.pieces is None:
+    if plan.segments is None:
         return
     assert scene.slack(plan.goal)[0] > -1e-6
     offset = dist(plan.goal, site)
@@ -283,7 +283,7 @@ def test_bodies_must_have_room(points, arena, message):
         Planner(arena, 0.1, points, (CLEARANCE,))
 
 
-def test_a_maze_makes_a_path_of_many_pieces(trace):
+def test_a_maze_makes_a_path_of_many_segments(trace):
     walls = tuple(
         Polygon(
             (
@@ -299,6 +299,6 @@ def test_a_maze_makes_a_path_of_many_pieces(trace):
     planner = Planner(arena, 0.1, [(0.3, 5.0)], (CLEARANCE,))
     plan = planner.plan(0, (0.3, 5.0), (9.7, 5.0))
     scene = Scene(arena, 0.1, np.array([(0.3, 5.0)]), 0)
-    assert len(plan.pieces) > 40
+    assert len(plan.segments) > 40
     check(scene, plan, (0.3, 5.0), (9.7, 5.0), trace)
     assert plan.length == pytest.approx(scene.shortest((0.3, 5.0), (9.7, 5.0)), rel=2e-3)

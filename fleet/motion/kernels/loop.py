@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fleet.motion.chipmunk import park_body, read_body, step_space, wake_body, write_body
-from fleet.motion.kernels.adrift import recover
 from fleet.motion.kernels.bumps import bumps, stay
 from fleet.motion.kernels.drive import coast, drive, position_at, swing, wait
 from fleet.motion.kernels.geometry import wrapped
@@ -26,7 +25,8 @@ from fleet.motion.kernels.records import (
     Traffic,
     Wires,
 )
-from fleet.motion.kernels.tracks import foresee, reserve
+from fleet.motion.kernels.recovery import recover
+from fleet.motion.kernels.reservations import foresee, reserve
 from protocols.compiled import kernel
 
 STILL = 1e-9  # [m/s] a smaller difference to the command is no contact
@@ -36,33 +36,33 @@ STILL = 1e-9  # [m/s] a smaller difference to the command is no contact
 def launch(
     floor: Floor, traffic: Traffic, active: IntArray, slot: int, path: Records, step: int
 ) -> int:
-    """Send the mover in ``slot`` along ``path``, (k,) PIECE, at ``step`` or as soon as its way is
+    """Send the mover in ``slot`` along ``path``, (k,) SEGMENT, at ``step`` or as soon as its way is
     free, and reserve the place where it will rest.
 
     Returns how many knots its track has; if that is more than there is room for, it must be
     launched again with more.
     """
-    movers, pieces, law = traffic.movers, traffic.pieces, traffic.law[0]
-    tracks, boxes = traffic.tracks, traffic.boxes
+    movers, segments, params = traffic.movers, traffic.segments, traffic.params[0]
+    reservations, boxes = traffic.reservations, traffic.boxes
     mover, end = movers[slot], len(path) + 1
     for k in range(1, end):
-        pieces[slot, k] = path[k - 1]
-    set_off(mover, pieces, end, law)
+        segments[slot, k] = path[k - 1]
+    set_off(mover, segments, end, params)
     mover.phase, mover.start, mover.knots = WAITING, step, 0
     if end == 1:
         mover.phase = ARRIVED
         return 0
     if mover.ux != 0.0 or mover.uy != 0.0:
-        mover.adrift = 1
-    x, y = position_at(pieces[slot, end - 1], pieces[slot, end - 1].length)
-    if law.reserved:
+        mover.off_path = 1
+    x, y = position_at(segments[slot, end - 1], segments[slot, end - 1].length)
+    if params.reserved:
         traffic.ghost[0] = mover
         ghost = traffic.ghost[0]
-        foresee(mover, ghost, pieces, tracks, boxes, law, step)
-        if mover.knots > tracks.shape[1]:
+        foresee(mover, ghost, segments, reservations, boxes, params, step)
+        if mover.knots > reservations.shape[1]:
             return int(mover.knots)
-        put_off = reserve(mover, movers, tracks, boxes, active, traffic.near, law)
-        mover.start += law.stride * put_off
+        put_off = reserve(mover, movers, reservations, boxes, active, traffic.near, params)
+        mover.start += params.stride * put_off
         x, y = ghost.x, ghost.y
     put(floor, mover.robot, x, y)
     return int(mover.knots)
@@ -91,7 +91,7 @@ def embark(
 
 
 @kernel
-def _decide(mover, pieces, law, step):
+def _decide(mover, segments, params, step):
     """Command what a mover does in ``step``; returns whether it does anything.
 
     Its body is woken when it leaves its place: where robots are kept apart, one that turns on
@@ -99,21 +99,21 @@ def _decide(mover, pieces, law, step):
     """
     if mover.phase == WAITING:
         if step < mover.start:
-            wait(mover, law)
+            wait(mover, params)
             return False
         mover.phase = DRIVING
     mover.steps += 1
-    if mover.adrift:
-        recover(mover, pieces, law)
+    if mover.off_path:
+        recover(mover, segments, params)
     else:
-        drive(mover, pieces, law, law.dt)
-    if not mover.awake and (mover.vx != 0.0 or mover.vy != 0.0 or not law.reserved):
+        drive(mover, segments, params, params.dt)
+    if not mover.awake and (mover.vx != 0.0 or mover.vy != 0.0 or not params.reserved):
         mover.awake = 2
     return True
 
 
 @kernel
-def _see(mover, law):
+def _see(mover, params):
     """See what became of the command; returns whether the trip needs looking after."""
     if mover.awake:
         mover.awake = 1
@@ -122,34 +122,34 @@ def _see(mover, law):
         if touching and not mover.touching:
             mover.contacts += 1
         mover.touching = 1 if touching else 0
-        if touching and mover.phase == DRIVING and not mover.adrift:
-            mover.adrift = 1
-            if law.reserved:
+        if touching and mover.phase == DRIVING and not mover.off_path:
+            mover.off_path = 1
+            if params.reserved:
                 mover.phase = TOUCHED
     return mover.phase >= ARRIVED
 
 
 @kernel
-def command(movers: Records, pieces: Records, law: Record, active: IntArray, step: int) -> int:
+def command(movers: Records, segments: Records, params: Record, active: IntArray, step: int) -> int:
     """Decide what everybody does in ``step``; returns for how many that is up to the engine."""
-    moving, part = 0, law.dt / law.substeps
+    moving, part = 0, params.dt / params.substeps
     for k in range(len(active)):
         mover = movers[active[k]]
-        if _decide(mover, pieces, law, step):
+        if _decide(mover, segments, params, step):
             if mover.awake:
-                swing(mover, part, law.substeps)
+                swing(mover, part, params.substeps)
                 moving += 1
             else:
-                coast(mover, part, law.substeps)
+                coast(mover, part, params.substeps)
     return moving
 
 
 @kernel
-def settle(movers: Records, law: Record, active: IntArray) -> int:
+def settle(movers: Records, params: Record, active: IntArray) -> int:
     """See what became of the commands; returns how many trips need looking after."""
     over = 0
     for k in range(len(active)):
-        if _see(movers[active[k]], law):
+        if _see(movers[active[k]], params):
             over += 1
     return over
 
@@ -173,14 +173,14 @@ def _hear(mover, calls, bodies, numbers, counts):
 
 @kernel
 def sample(
-    movers: Records, law: Record, active: IntArray, samples: FloatArray, count: int, step: int
+    movers: Records, params: Record, active: IntArray, samples: FloatArray, count: int, step: int
 ) -> int:
     """Keep the poses at ``step`` of those whose turn it is; returns how many are kept now."""
     for k in range(len(active)):
         mover = movers[active[k]]
-        turn = mover.phase == DRIVING and (step - mover.departed) % law.sample == 0
+        turn = mover.phase == DRIVING and (step - mover.departed) % params.sample == 0
         if turn or mover.phase >= ARRIVED:
-            samples[count, 0], samples[count, 1] = mover.robot, step * law.dt
+            samples[count, 0], samples[count, 1] = mover.robot, step * params.dt
             samples[count, 2], samples[count, 3] = mover.x, mover.y
             samples[count, 4] = wrapped(mover.heading)
             samples[count, 5] = mover.held - mover.spent
@@ -220,22 +220,22 @@ def run(
     where bodies may touch at all: in steps of several parts. Returns (steps made, samples kept,
     trips that need looking after); it stops early if ``samples`` gets full.
     """
-    movers, pieces, law = traffic.movers, traffic.pieces, traffic.law[0]
+    movers, segments, params = traffic.movers, traffic.segments, traffic.params[0]
     calls, bodies, numbers, counts = wires.calls, wires.bodies, wires.numbers, wires.counts
-    engine, substeps, part = calls[0] != 0, law.substeps, law.dt / law.substeps
+    engine, substeps, part = calls[0] != 0, params.substeps, params.dt / params.substeps
     made, kept, over = 0, 0, 0
     while made < steps and over == 0:
-        if law.sample > 0 and kept + len(active) > len(samples):
+        if params.sample > 0 and kept + len(active) > len(samples):
             break
         moving = 0
         for k in range(len(active)):
             mover = movers[active[k]]
-            if _decide(mover, pieces, law, step + made):
+            if _decide(mover, segments, params, step + made):
                 if engine and mover.awake:
                     _tell(mover, calls, bodies, numbers, counts)
                     swing(mover, part, substeps)
                     moving += 1
-                elif substeps > 1 and bumps(mover, movers, active, floor, law):
+                elif substeps > 1 and bumps(mover, movers, active, floor, params):
                     stay(mover)
                 else:
                     coast(mover, part, substeps)
@@ -246,14 +246,14 @@ def run(
             mover = movers[active[k]]
             if engine and mover.awake:
                 _hear(mover, calls, bodies, numbers, counts)
-            if _see(mover, law):
+            if _see(mover, params):
                 over += 1
                 if mover.awake and mover.phase <= EMPTY:
                     mover.awake = 0
                     if engine:
                         park_body(calls, bodies[mover.robot])
         made += 1
-        if law.sample > 0:
-            kept = sample(movers, law, active, samples, kept, step + made)
+        if params.sample > 0:
+            kept = sample(movers, params, active, samples, kept, step + made)
     report(movers, active, traffic.poses, traffic.over)
     return made, kept, over

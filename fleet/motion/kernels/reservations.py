@@ -1,8 +1,8 @@
 """Reservations: where a robot will be, and how long it must wait for others to pass.
 
 A track is a list of knots: where the robot will be at the ticks of one clock for all, one tick
-every ``law.stride`` steps. Between two knots it is taken to move evenly; the gap that robots
-keep has room for the difference. Two tracks are in conflict if the robots come nearer to each
+every ``params.stride`` steps. Between two knots it is taken to move evenly; the gap that robots
+keep has room for the difference. Two reservations are in conflict if the robots come nearer to each
 other than the gap while one of them drives. Nobody's path leads through where others rest or
 will rest, so a robot that waits is safe from everybody, and its track is free at the latest when
 all others have arrived: nobody waits forever.
@@ -25,10 +25,10 @@ def bound(mover, boxes):
 
 
 @kernel
-def _note(mover, tracks, boxes, x, y):
+def _note(mover, reservations, boxes, x, y):
     """Add (x, y) [m] to the track, if there is room, and to its bounds."""
-    if mover.knots < tracks.shape[1]:
-        tracks[mover.slot, mover.knots, 0], tracks[mover.slot, mover.knots, 1] = x, y
+    if mover.knots < reservations.shape[1]:
+        reservations[mover.slot, mover.knots, 0], reservations[mover.slot, mover.knots, 1] = x, y
     mover.knots += 1
     box = boxes[mover.slot]
     box[0], box[1] = min(box[0], x), min(box[1], y)
@@ -36,27 +36,27 @@ def _note(mover, tracks, boxes, x, y):
 
 
 @kernel
-def foresee(mover, ghost, pieces, tracks, boxes, law, step):
+def foresee(mover, ghost, segments, reservations, boxes, params, step):
     """Drive a ghost of ``mover`` to its end from ``step`` on, and keep its track.
 
     The mover gets the track's clock, length and bounds; ``ghost``, a record, ends as it will.
     If there are more knots than a track has room for, the rest is not kept.
     """
-    mover.first, mover.knots = step // law.stride, 0
-    tick = law.stride * law.dt
-    gone = (step - mover.first * law.stride) * law.dt
+    mover.first, mover.knots = step // params.stride, 0
+    tick = params.stride * params.dt
+    gone = (step - mover.first * params.stride) * params.dt
     bound(mover, boxes)
     ghost.phase = DRIVING
-    drive(ghost, pieces, law, tick - gone)
+    drive(ghost, segments, params, tick - gone)
     coast(ghost, tick - gone, 1)
     back = gone / (tick - gone)  # the first knot lies in the past
     x, y = mover.x - back * (ghost.x - mover.x), mover.y - back * (ghost.y - mover.y)
-    _note(mover, tracks, boxes, x, y)
-    _note(mover, tracks, boxes, ghost.x, ghost.y)
+    _note(mover, reservations, boxes, x, y)
+    _note(mover, reservations, boxes, ghost.x, ghost.y)
     while ghost.phase == DRIVING:
-        drive(ghost, pieces, law, tick)
+        drive(ghost, segments, params, tick)
         coast(ghost, tick, 1)
-        _note(mover, tracks, boxes, ghost.x, ghost.y)
+        _note(mover, reservations, boxes, ghost.x, ghost.y)
 
 
 @kernel
@@ -66,12 +66,12 @@ def _knot(mover, tick):
 
 
 @kernel
-def _apart(one, other, tracks, tick):
+def _apart(one, other, reservations, tick):
     """From the other to the one at ``tick`` [m]."""
     i, j = _knot(one, tick), _knot(other, tick)
     return (
-        tracks[one.slot, i, 0] - tracks[other.slot, j, 0],
-        tracks[one.slot, i, 1] - tracks[other.slot, j, 1],
+        reservations[one.slot, i, 0] - reservations[other.slot, j, 0],
+        reservations[one.slot, i, 1] - reservations[other.slot, j, 1],
     )
 
 
@@ -88,20 +88,20 @@ def _meet(dx, dy, ex, ey, gap):
 
 
 @kernel
-def conflict(one, other, tracks, law, first, last):
+def conflict(one, other, reservations, params, first, last):
     """Whether two movers come nearer than the gap between the ticks ``first`` and ``last``.
 
     As neither drives faster than cruise speed, ticks are passed over for which they are too far
     apart.
     """
-    closing = 2.0 * law.cruise * law.stride * law.dt  # [m] in a tick, at most
+    closing = 2.0 * params.cruise * params.stride * params.dt  # [m] in a tick, at most
     tick = first
     while tick < last:
-        dx, dy = _apart(one, other, tracks, tick)
-        skip = int((math.sqrt(dx * dx + dy * dy) - law.gap) / closing)
+        dx, dy = _apart(one, other, reservations, tick)
+        skip = int((math.sqrt(dx * dx + dy * dy) - params.gap) / closing)
         if skip < 1:
-            ex, ey = _apart(one, other, tracks, tick + 1)
-            if _meet(dx, dy, ex, ey, law.gap):
+            ex, ey = _apart(one, other, reservations, tick + 1)
+            if _meet(dx, dy, ex, ey, params.gap):
                 return True
             skip = 1
         tick += skip
@@ -110,7 +110,7 @@ def conflict(one, other, tracks, law, first, last):
 
 @kernel
 def neighbours(mover, boxes, active, gap, near):
-    """List in ``near`` the other slots whose tracks come near that of ``mover``; how many."""
+    """List in ``near`` the other slots whose reservations come near that of ``mover``; how many."""
     count = 0
     x0, y0 = boxes[mover.slot, 0] - gap, boxes[mover.slot, 1] - gap
     x1, y1 = boxes[mover.slot, 2] + gap, boxes[mover.slot, 3] + gap
@@ -125,18 +125,18 @@ def neighbours(mover, boxes, active, gap, near):
 
 
 @kernel
-def reserve(mover, movers, tracks, boxes, active, near, law):
+def reserve(mover, movers, reservations, boxes, active, near, params):
     """Put off the track of ``mover`` until it conflicts with no other: by how many ticks.
 
     Ticks count from when it drives until the other has arrived.
     """
     asked = mover.first
-    count = neighbours(mover, boxes, active, law.gap, near)
+    count = neighbours(mover, boxes, active, params.gap, near)
     k, passed = 0, 0
     while passed < count:
         other = movers[near[k]]
         last = other.first + other.knots - 1
-        while conflict(mover, other, tracks, law, mover.first, last):
+        while conflict(mover, other, reservations, params, mover.first, last):
             mover.first += 1
             passed = 0
         passed += 1

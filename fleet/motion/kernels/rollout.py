@@ -12,29 +12,29 @@ PLENTY = 1e300  # [J]
 
 
 @kernel
-def outlook(
+def rollout(
     ghosts: Records,
-    pieces: Records,
-    law: Records,
+    segments: Records,
+    params: Records,
     path: Records,
     x: float,
     y: float,
     heading: float,
 ) -> float:
-    """The energy [J] of driving along ``path``, (k,) PIECE, from (x, y) [m] and ``heading`` [rad]:
-    the turn on the spot and all ramps included, but nothing for others on the way. Where there is
-    no path to drive it is nothing.
+    """The energy [J] of driving along ``path``, (k,) SEGMENT, from (x, y) [m] and ``heading``
+    [rad]: the turn on the spot and all ramps included, but nothing for others on the way. Where
+    there is no path to drive it is nothing.
 
-    ``ghosts``, (1,) MOVER, and ``pieces``, (1, more than k) PIECE, are work space.
+    ``ghosts``, (1,) MOVER, and ``segments``, (1, more than k) SEGMENT, are work space.
     """
     if len(path) == 0:
         return 0.0
     ghost, end = ghosts[0], len(path) + 1
     for k in range(1, end):
-        pieces[0, k] = path[k - 1]
+        segments[0, k] = path[k - 1]
     ghost.slot, ghost.phase = 0, DRIVING
     ghost.x, ghost.y, ghost.heading = x, y, heading
     ghost.held, ghost.spent = PLENTY, 0.0
-    set_off(ghost, pieces, end, law[0])
-    go_on(ghost, pieces, FOR_EVER)
+    set_off(ghost, segments, end, params[0])
+    go_on(ghost, segments, FOR_EVER)
     return float(ghost.spent)

@@ -7,7 +7,7 @@ from math import ceil, inf
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.motion.kernels.records import GRIP, LAW
+from fleet.motion.kernels.records import GRIP, PARAMS
 from fleet.motion.options import DriveOptions
 from fleet.robot import RobotSpec
 
@@ -15,28 +15,32 @@ SINK = 5e-4  # [m] that bodies which drive into each other may sink in before th
 TICK = 1.0 / 15.0  # [s] from knot to knot of a track, about
 
 
-def law_of(
+def params_of(
     spec: RobotSpec, options: DriveOptions, sample_interval: float | None
 ) -> NDArray[np.void]:
-    """The record (1,) LAW that all kernels share."""
+    """The record (1,) PARAMS that all kernels share."""
     stride = max(1, round(TICK / options.dt))
-    law = np.zeros(1, LAW)
-    law["dt"] = options.dt
-    law["radius"], law["mass"], law["half_track"] = spec.radius, spec.mass, 0.5 * spec.wheel_track
-    law["cruise"], law["acceleration"] = spec.cruise, spec.acceleration
-    law["turn_rate"], law["turn_acceleration"] = spec.turn_rate, spec.turn_acceleration
+    params = np.zeros(1, PARAMS)
+    params["dt"] = options.dt
+    params["radius"], params["mass"], params["half_track"] = (
+        spec.radius,
+        spec.mass,
+        0.5 * spec.wheel_track,
+    )
+    params["cruise"], params["acceleration"] = spec.cruise, spec.acceleration
+    params["turn_rate"], params["turn_acceleration"] = spec.turn_rate, spec.turn_acceleration
     for coefficient in ("quadratic", "linear", "constant"):
-        law[coefficient] = getattr(spec.power, coefficient)
+        params[coefficient] = getattr(spec.power, coefficient)
     for extra in ("idle", "kinetic", "per_wheel"):
-        law[extra] = getattr(spec.extra, extra)
-    law["holonomic"], law["reverse"] = spec.drive == "holonomic", spec.reverse
-    law["reserved"] = options.traffic == "reserved"
-    law["stride"] = stride
-    law["gap"] = 2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt)
-    law["substeps"] = 1
+        params[extra] = getattr(spec.extra, extra)
+    params["holonomic"], params["reverse"] = spec.drive == "holonomic", spec.reverse
+    params["reserved"] = options.traffic == "reserved"
+    params["stride"] = stride
+    params["gap"] = 2.0 * spec.radius + options.headway + 2.0 * _strays(spec, stride * options.dt)
+    params["substeps"] = 1
     if sample_interval is not None:
-        law["sample"] = max(1, round(sample_interval / options.dt))
-    return law
+        params["sample"] = max(1, round(sample_interval / options.dt))
+    return params
 
 
 def fine_substeps(spec: RobotSpec, options: DriveOptions) -> int:

@@ -18,7 +18,7 @@ class NoOptions:
     """Nothing to choose."""
 
 
-class Entry(NamedTuple):
+class MotionKind(NamedTuple):
     """A way to go: how it is made, what can be chosen, and whether robots need room."""
 
     function: Callable[..., Motion]  # spec, arena, options, sample interval [s]
@@ -54,8 +54,10 @@ def physics(
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
 
-MOTIONS: dict[str, Entry] = {
-    "path": Entry(path, DriveOptions, True, "tangent graph: exact; drive: trapezoidal profile"),
-    "physics": Entry(physics, DriveOptions, True, "Munk2D through pymunk"),
-    "straight": Entry(straight, NoOptions, False, PAPER),
+MOTIONS: dict[str, MotionKind] = {
+    "path": MotionKind(
+        path, DriveOptions, True, "tangent graph: exact; drive: trapezoidal profile"
+    ),
+    "physics": MotionKind(physics, DriveOptions, True, "Munk2D through pymunk"),
+    "straight": MotionKind(straight, NoOptions, False, PAPER),
 }
