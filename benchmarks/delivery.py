@@ -13,7 +13,7 @@ from collections.abc import Mapping
 
 import fleet
 from fleet.assembly import prepare
-from fleet.observer import Observer, Sent
+from fleet.observer import Excerpt, Observer
 from protocols.messages import Award, Event, RobotId
 
 SEEDS = 5
@@ -37,9 +37,9 @@ class Routes(Observer):
         self._on_way[event.id] = 0
         self._source[event.id] = source, hops_from(source, self._fleet.topology.neighbours)
 
-    def sent(self, sent: Sent) -> None:
-        self._on_way[sent.event] += 1
-        self.frames += sent.attempts
+    def transmitted(self, excerpt: Excerpt) -> None:
+        self._on_way[excerpt.event] += len(excerpt.attempts)
+        self.frames += sum(excerpt.attempts)
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         if not award.bids:

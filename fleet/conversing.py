@@ -105,7 +105,7 @@ class Conversations:
         finally:
             if said:
                 once = (1,) * len(said)
-                self.audience.transcribed(Excerpt(first, now, task.event.id, said, by_whom, once))
+                self.audience.transmitted(Excerpt(first, now, task.event.id, said, by_whom, once))
         self.under_way -= 1
         self.concluded(task, award)
 
@@ -133,7 +133,7 @@ class Conversations:
         self._charge(transmission, attempts)
         if self.audience.listens:
             line = [transmission], [reception.heard], [attempts]
-            self.audience.transcribed(Excerpt(self._number, now, talk.task.event.id, *line))
+            self.audience.transmitted(Excerpt(self._number, now, talk.task.event.id, *line))
         heard = self._in_time(talk, transmission, reception.heard, now)
         self._wait(talk, heard, now + reception.delay)
 

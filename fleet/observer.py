@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from difflib import get_close_matches
 from functools import partial
+from inspect import getattr_static
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,8 +20,8 @@ if TYPE_CHECKING:
     from fleet.results import Summary
 
 
-class Sent(NamedTuple):
-    """A line of the transcript: one transmission, when it was on the air, and who heard it."""
+class TranscriptLine(NamedTuple):
+    """One transmission, when it was on the air, and who heard it."""
 
     number: int  # counts the transmissions of the run, from 1
     time: float  # [s]
@@ -39,12 +41,17 @@ class Excerpt(NamedTuple):
     heard: Sequence[Heard]  # by whom each
     attempts: Sequence[int]  # frames each took
 
-    def lines(self) -> list[Sent]:
+    def lines(self) -> list[TranscriptLine]:
         """One by one."""
         count = len(self.transmissions)
         numbers = range(self.first, self.first + count)
         times, events = (self.time,) * count, (self.event,) * count
-        return [*map(Sent, numbers, times, events, self.transmissions, self.heard, self.attempts)]
+        return [
+            *map(
+                TranscriptLine,
+                numbers, times, events, self.transmissions, self.heard, self.attempts,
+            )
+        ]  # fmt: skip
 
 
 class Observer:
@@ -66,16 +73,11 @@ class Observer:
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """``source`` is told of the event; again, by another robot, if a trip failed."""
 
-    def transcribed(self, excerpt: Excerpt) -> None:
-        """Transmissions were made; by default :meth:`sent` is told of each.
+    def transmitted(self, excerpt: Excerpt) -> None:
+        """Transmissions were made; ``excerpt.lines()`` has them one by one.
 
         Over a radio that takes no time it is all of a conversation at once, after its last.
         """
-        for sent in excerpt.lines():
-            self.sent(sent)
-
-    def sent(self, sent: Sent) -> None:
-        """A transmission was made."""
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """A conversation has ended."""
@@ -119,6 +121,9 @@ class Observer:
 
 HOOKS = tuple(name for name in vars(Observer) if callable(getattr(Observer, name)))
 """What a run tells of."""
+RENAMED = {"sent": "transmitted", "transcribed": "transmitted"}
+"""What hooks were called before."""
+_nearest = partial(get_close_matches, possibilities=HOOKS, n=1, cutoff=0.75)
 
 
 class Audience(Observer):
@@ -128,11 +133,12 @@ class Audience(Observer):
         self.present = len(observers) > 0
         self.sample_interval = _shortest([o.sample_interval for o in observers])
         self.link_interval = _shortest([o.link_interval for o in observers])
-        self.listens = any(_overrides(o, "transcribed", "sent") for o in observers)
+        for observer in observers:
+            _check_hooks(observer)
+        self.listens = any(_overrides(o, "transmitted") for o in observers)
         self._observers = tuple(observers)
-        for hook in set(HOOKS) - {"sent", "closed"}:
-            also = ("sent",) if hook == "transcribed" else ()
-            told = [getattr(o, hook) for o in observers if _overrides(o, hook, *also)]
+        for hook in set(HOOKS) - {"closed"}:
+            told = [getattr(o, hook) for o in observers if _overrides(o, hook)]
             setattr(self, hook, told[0] if len(told) == 1 else partial(_tell, told))
 
     def closed(self) -> None:
@@ -147,11 +153,23 @@ def _tell(told: Sequence[Callable[..., None]], *what: Any) -> None:
         hook(*what)
 
 
-def _overrides(observer: Observer, *hooks: str) -> bool:
-    """Whether it has any of the hooks of its own, by its class or as an attribute."""
-    own = (getattr(observer, hook) for hook in hooks)
-    idle = [getattr(Observer, hook) for hook in hooks]
-    return any(getattr(hook, "__func__", hook) not in idle for hook in own)
+def _overrides(observer: Observer, hook: str) -> bool:
+    """Whether it has the hook of its own, by its class or as an attribute."""
+    own = getattr(observer, hook)
+    return getattr(own, "__func__", own) is not getattr(Observer, hook)
+
+
+def _check_hooks(observer: Observer) -> None:
+    """Raises TypeError if a public method is called nearly as a hook is: it would never be told."""
+    for name in dir(observer):
+        if name.startswith("_") or hasattr(Observer, name):
+            continue
+        near = RENAMED.get(name) or "".join(_nearest(name))
+        if near and callable(getattr_static(observer, name)):
+            raise TypeError(
+                f"{type(observer).__name__}.{name} is no hook of a run, which would never call it;"
+                f" did you mean {near!r}?"
+            )
 
 
 def _shortest(intervals: Sequence[float | None]) -> float | None:

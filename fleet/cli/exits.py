@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from fleet.replay.errors import CannotRecord
+from fleet.replay.failures import CannotRecord
 from fleet.scenario.errors import BadInput
 from worlds.arena import ImpossibleWorld
 

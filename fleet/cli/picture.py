@@ -17,7 +17,7 @@ TIMELINES = {"round": "round", "msg": "msg", "message": "msg", "time": "sim_time
 THEMES = ("light", "dark")
 
 
-class Moment(click.ParamType[dict[str, float]]):
+class MomentType(click.ParamType[dict[str, float]]):
     """A moment on one of the timelines, such as round=12, as ``{"round": 12.0}``."""
 
     name = "moment"
@@ -39,7 +39,7 @@ class Moment(click.ParamType[dict[str, float]]):
         return {timeline: moment}
 
 
-MOMENT = Moment()
+MOMENT = MomentType()
 
 
 @click.command("picture")
@@ -84,7 +84,7 @@ def command(
         try:
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
             if at is not None:
-                from fleet.replay.picture import picture
+                from fleet.replay.still import picture
 
                 picture(recording, at, out, **given)
             elif start is not None and stop is not None:

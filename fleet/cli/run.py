@@ -14,8 +14,6 @@ from fleet.cli.exits import bad_input_exits, program
 
 if TYPE_CHECKING:
     from fleet.observer import Observer
-    from fleet.replay.scribe import Scribe
-    from fleet.scenario.model import Scenario
 
 
 @click.command("run")
@@ -49,11 +47,11 @@ def command(
     given = {k: v for k, v in {**options, "range": range_}.items() if v is not None}
     with ExitStack() as stack:
         stack.enter_context(bad_input_exits())
-        scribe = None
+        writer = None
         if rrd is not None or view:
-            from fleet.replay.scribe import Scribe
+            from fleet.replay.writer_process import WriterProcess
 
-            scribe = stack.enter_context(Scribe())  # it gets ready while we do
+            writer = stack.enter_context(WriterProcess())  # it gets ready while we do
         from fleet.assembly import run
         from fleet.cli.progress import RunProgress
         from fleet.cli.summary import print_summary
@@ -61,8 +59,10 @@ def command(
 
         loaded = load_scenario(scenario, given, settings)
         observers: list[Observer] = [RunProgress(loaded.rounds)] if sys.stderr.isatty() else []
-        if scribe is not None:
-            observers.append(recorded(loaded, rrd, scribe, live=view))
+        if writer is not None:
+            from fleet.replay import recorder
+
+            observers.append(recorder(loaded, rrd, live=view, writer=writer))
         summary = run(loaded, observers)
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
@@ -70,22 +70,3 @@ def command(
     print_summary(summary)
     if rrd is not None:
         click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
-
-
-def recorded(scenario: Scenario, path: Path | None, scribe: Scribe, *, live: bool) -> Observer:
-    """The recorder for a file, a live viewer, or both.
-
-    Raises:
-        BadInput: the file cannot be written, or no viewer can be opened here.
-    """
-    from fleet.replay import recorder
-    from fleet.scenario.errors import bad
-
-    try:
-        if path is not None:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        return recorder(scenario, path, live=live, scribe=scribe)
-    except OSError as error:
-        raise bad("--rrd", f"{str(path)!r} cannot be written: {error.strerror}") from error
-    except ValueError as error:
-        raise bad("", str(error)) from error

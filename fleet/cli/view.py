@@ -18,7 +18,7 @@ TIMELINES = ("sim_time", "round", "msg")
               help="The timeline to scrub by at first.  [sim_time; several: round]")  # fmt: skip
 def command(recordings: tuple[Path, ...], web: bool, by: str | None) -> None:
     """Open recordings in the Rerun viewer; several are shown side by side."""
-    from fleet.replay.view import view
+    from fleet.replay.viewer import view
     from fleet.scenario.errors import bad
 
     with bad_input_exits():

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fleet.replay.recording import RerunRecorder
-    from fleet.replay.scribe import Scribe
+    from fleet.replay.rerun_recorder import RerunRecorder
+    from fleet.replay.writer_process import WriterProcess
     from fleet.scenario.model import Scenario
 
 __all__ = ["RerunRecorder", "recorder"]
@@ -23,11 +23,11 @@ def recorder(
     path: Path | None,
     *,
     live: bool | str = False,
-    scribe: Scribe | None = None,
+    writer: WriterProcess | None = None,
 ) -> RerunRecorder:
     """An observer that records a run of ``scenario`` into a file, for a live viewer, or both.
 
-    The file's folder is made if there is none. A ``scribe`` started earlier is quicker ready.
+    The file's folder is made if there is none. A ``writer`` started earlier is quicker ready.
 
     Raises:
         BadInput: there is nowhere to record to, the file cannot be written, or no viewer can
@@ -37,7 +37,7 @@ def recorder(
     import json
 
     from fleet import __version__
-    from fleet.replay.recording import RerunRecorder
+    from fleet.replay.rerun_recorder import RerunRecorder
     from fleet.scenario.errors import bad
 
     described: dict[str, Any] = scenario.as_dict()
@@ -50,7 +50,7 @@ def recorder(
             key=hashlib.sha256(named.encode()).hexdigest()[:16],
             properties={"version": __version__, **described},
             live=live,
-            scribe=scribe,
+            writer=writer,
         )
     except OSError as error:
         raise bad("", f"cannot record to {path}: {error.strerror}") from error
@@ -62,6 +62,6 @@ def __getattr__(name: str) -> Any:
     """Load the recorder when it is asked for."""
     if name != "RerunRecorder":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from fleet.replay.recording import RerunRecorder
+    from fleet.replay.rerun_recorder import RerunRecorder
 
     return RerunRecorder

@@ -10,9 +10,9 @@ import rerun.blueprint as rrb
 from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
 
 from fleet.replay import scheme
-from fleet.replay.pages.lifetime import MAP_HEIGHT, MAP_WIDTH
-from fleet.replay.pages.tree import HEIGHT, WIDTH
-from fleet.replay.pages.words import DECIDED, FAILED
+from fleet.replay.layers.auction_tree import HEIGHT, WIDTH
+from fleet.replay.layers.event_log import DECIDED, FAILED
+from fleet.replay.layers.lifetime import MAP_HEIGHT, MAP_WIDTH
 
 RIM = 1.3  # radius of the dark rim around a robot, in its radii
 DARK = list(scheme.GROUND_COLOUR)

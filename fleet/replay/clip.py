@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from fleet.replay.picture import check_ending, draw, the_moment
+from fleet.replay.colormap import TABLE
 from fleet.replay.scheme import (
     EVENT_COLOUR,
     KIND_COLOURS,
@@ -24,7 +24,7 @@ from fleet.replay.scheme import (
     ROUTING_COLOUR,
     SIM_TIME,
 )
-from fleet.replay.shades import TABLE
+from fleet.replay.still import check_ending, draw, the_moment
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -80,8 +80,8 @@ def clip(
     """
     from PIL import Image
 
+    from fleet.replay.floor_figure import FloorFigure
     from fleet.replay.readback import Recording
-    from fleet.replay.sketch import Sketch
 
     for name, value in (("speed", speed), ("frames a second", frames_per_second)):
         if not value > 0.0:
@@ -92,10 +92,10 @@ def clip(
         raise ValueError(f"{out}: an .mp4 takes ffmpeg, which is not installed; a .gif does not")
     loaded = Recording(recording)
     moments = frames(loaded, start, stop, speed / frames_per_second)
-    sketch = Sketch(loaded, theme)
+    floor = FloorFigure(loaded, theme)
     drawn: list[Image.Image] = []
     for timeline, moment in moments:
-        figure = draw(sketch, timeline, moment, size, dots_per_inch)
+        figure = draw(floor, timeline, moment, size, dots_per_inch)
         dots = io.BytesIO()
         figure.savefig(dots, format="png", facecolor=figure.get_facecolor())
         drawn.append(Image.open(dots).convert("RGB"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fleet.replay.story import Story
+from fleet.replay.state import FleetState
 
 GRAPHS = {
     "gabriel": "Gabriel graph",
@@ -12,10 +12,10 @@ GRAPHS = {
 }
 
 
-def guide(story: Story) -> str:
+def guide(state: FleetState) -> str:
     """The text beside the picture, as Markdown."""
-    scene = story.scene
-    life_size = story.mark == scene.radius
+    scene = state.scene
+    life_size = state.mark == scene.radius
     size = "" if life_size else f", drawn larger than it is ({scene.radius:g} m)"
     graph = GRAPHS.get(scene.graph, scene.graph)
     return f"""\

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from fleet.replay.view import free_port, viewer_binary, viewer_environment
+from fleet.replay.viewer import free_port, viewer_binary, viewer_environment
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -14,7 +14,7 @@ from typing import IO, Any, NamedTuple, TypeAlias
 from protocols.messages import Heard, Point, RobotId
 
 
-class Told(NamedTuple):
+class RecordedLine(NamedTuple):
     """One transmission, flat."""
 
     number: int
@@ -45,8 +45,8 @@ class TripEnd(NamedTuple):
 
 RELOCATED = "relocated"  # the outcome of a trip to a place that is no event
 
-Entry: TypeAlias = tuple[Any, ...]
-"""A happening: its name, and what the teller is told of it, in plain values: pickle takes ten
+Note: TypeAlias = tuple[Any, ...]
+"""A happening: its name, and what the dispatcher is told of it, in plain values: pickle takes ten
 times as long for values of classes of our own."""
 
 

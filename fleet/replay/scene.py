@@ -11,15 +11,15 @@ import rerun as rr
 from PIL import Image, ImageDraw
 
 from fleet.replay import scheme
+from fleet.replay.colormap import TABLE
 from fleet.replay.guide import guide
 from fleet.replay.journal import Scene
-from fleet.replay.pages.counts import describe_counts
-from fleet.replay.pages.labels import HANG
-from fleet.replay.pages.lifetime import describe_lifetime
-from fleet.replay.pages.words import describe_phases
-from fleet.replay.shades import TABLE
-from fleet.replay.story import Story
-from fleet.replay.stream import Stream
+from fleet.replay.layers.curves import describe_counts
+from fleet.replay.layers.event_log import describe_phases
+from fleet.replay.layers.label_placement import HANG
+from fleet.replay.layers.lifetime import describe_lifetime
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState
 from protocols.messages import Point
 
 RING = 1.75  # radius of the ring around a robot, in its radii
@@ -32,11 +32,11 @@ HATCH = (38, 45, 57)
 BLOCK = (52, 60, 74)
 
 
-def describe(stream: Stream, scene: Scene, key: str, properties: Mapping[str, Any]) -> None:
+def describe(sink: Sink, scene: Scene, key: str, properties: Mapping[str, Any]) -> None:
     """Say what this is a recording of."""
-    stream.name(f"{scene.protocol} · {scene.world} · {scene.motion} · seed {scene.seed} · {key}")
-    stream.properties("run", {"key": key, **properties})
-    stream.properties(
+    sink.name(f"{scene.protocol} · {scene.world} · {scene.motion} · seed {scene.seed} · {key}")
+    sink.properties("run", {"key": key, **properties})
+    sink.properties(
         "scene",
         {
             "width": scene.width,
@@ -55,44 +55,44 @@ def describe(stream: Stream, scene: Scene, key: str, properties: Mapping[str, An
     )
 
 
-def draw_scene(stream: Stream, story: Story) -> None:
+def draw_scene(sink: Sink, state: FleetState) -> None:
     """The floor, and for everything that comes and goes its size, colour and place in the stack."""
-    scene, mark = story.scene, story.mark
-    stream.static(scheme.WORLD, rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0])))  # y points up
-    _draw_floor(stream, scene)
+    scene, mark = state.scene, state.mark
+    sink.static(scheme.WORLD, rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0])))  # y points up
+    _draw_floor(sink, scene)
     line = 0.1 * mark
     for part in scheme.LINK_PARTS:
-        _style_lines(stream, f"{scheme.UDG}/{part}", 0.8 * line, scheme.UDG_COLOUR, 1.0)
-        _style_lines(stream, f"{scheme.ROUTING}/{part}", 1.4 * line, scheme.ROUTING_COLOUR, 2.0)
-    _style_lines(stream, scheme.STRAIGHT, 1.6 * line, scheme.WINNER_COLOUR, 9.0)
-    _style_lines(stream, scheme.RELOCATION, 1.6 * line, scheme.RELOCATION_COLOUR, 9.0)
-    _style_lines(stream, scheme.PLANNED, 0.9 * line, scheme.PLANNED_COLOUR, 9.2)
-    _style_lines(stream, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
-    _style_lines(stream, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
+        _style_lines(sink, f"{scheme.UDG}/{part}", 0.8 * line, scheme.UDG_COLOUR, 1.0)
+        _style_lines(sink, f"{scheme.ROUTING}/{part}", 1.4 * line, scheme.ROUTING_COLOUR, 2.0)
+    _style_lines(sink, scheme.STRAIGHT, 1.6 * line, scheme.WINNER_COLOUR, 9.0)
+    _style_lines(sink, scheme.RELOCATION, 1.6 * line, scheme.RELOCATION_COLOUR, 9.0)
+    _style_lines(sink, scheme.PLANNED, 0.9 * line, scheme.PLANNED_COLOUR, 9.2)
+    _style_lines(sink, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
+    _style_lines(sink, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
     for order, kind in enumerate(scheme.KIND_COLOURS):
         width = 1.6 if kind in ("call", "bid") else 2.8
-        _style_arrows(stream, scheme.messages(kind), width * line, scheme.kind_colour(kind), order)
-    _style_arrows(stream, scheme.LOST, 1.6 * line, scheme.LOST_COLOUR, 7)
-    stream.static(
+        _style_arrows(sink, scheme.messages(kind), width * line, scheme.kind_colour(kind), order)
+    _style_arrows(sink, scheme.LOST, 1.6 * line, scheme.LOST_COLOUR, 7)
+    sink.static(
         scheme.PACKET,
         rr.Arrows2D.from_fields(radii=3.6 * line, colors=scheme.PACKET_COLOUR, draw_order=18.0),
     )
-    stream.static(scheme.RINGS, rr.Points2D.from_fields(radii=RING * mark, draw_order=19.0))
-    stream.static(
+    sink.static(scheme.RINGS, rr.Points2D.from_fields(radii=RING * mark, draw_order=19.0))
+    sink.static(
         scheme.ROBOTS,
         rr.Points2D.from_fields(
             radii=mark,
             draw_order=21.0,
-            labels=[f"r{robot}" for robot in range(story.n)],
+            labels=[f"r{robot}" for robot in range(state.n)],
             show_labels=False,
         ),
     )
-    stream.static(
+    sink.static(
         scheme.MOVERS,
         rr.Points2D.from_fields(radii=mark, draw_order=25.0, show_labels=True),
         rr.Arrows2D.from_fields(radii=2.2 * line, colors=scheme.WINNER_COLOUR),
     )
-    stream.static(
+    sink.static(
         scheme.EVENT,
         rr.Points2D.from_fields(
             radii=0.45 * mark, colors=scheme.EVENT_COLOUR, draw_order=27.0, show_labels=False
@@ -104,7 +104,7 @@ def draw_scene(stream: Stream, story: Story) -> None:
         ),
     )
     if scene.search_radius > 0.0:
-        stream.static(
+        sink.static(
             scheme.SEARCH,
             rr.Ellipses2D.from_fields(
                 line_radii=1.2 * line,
@@ -113,33 +113,31 @@ def draw_scene(stream: Stream, story: Story) -> None:
                 show_labels=False,
             ),
         )
-    stream.static(
+    sink.static(
         scheme.NAMES, rr.Points2D.from_fields(radii=0.001, draw_order=40.0, show_labels=True)
     )
-    describe_phases(stream)
-    describe_counts(stream)
-    describe_lifetime(stream)
-    stream.static(
+    describe_phases(sink)
+    describe_counts(sink)
+    describe_lifetime(sink)
+    sink.static(
         scheme.TREE,
         rr.GraphNodes.from_fields(show_labels=True),
         rr.GraphEdges.from_fields(graph_type=rr.components.GraphType.Directed),
     )
-    stream.static(scheme.GUIDE, rr.TextDocument(guide(story), media_type=rr.MediaType.MARKDOWN))
+    sink.static(scheme.GUIDE, rr.TextDocument(guide(state), media_type=rr.MediaType.MARKDOWN))
 
 
-def _style_lines(stream: Stream, path: str, radius: float, colour: int, order: float) -> None:
-    stream.static(path, rr.LineStrips2D.from_fields(radii=radius, colors=colour, draw_order=order))
+def _style_lines(sink: Sink, path: str, radius: float, colour: int, order: float) -> None:
+    sink.static(path, rr.LineStrips2D.from_fields(radii=radius, colors=colour, draw_order=order))
 
 
-def _style_arrows(stream: Stream, path: str, radius: float, colour: int, order: int) -> None:
-    stream.static(
-        path, rr.Arrows2D.from_fields(radii=radius, colors=colour, draw_order=10.0 + order)
-    )
+def _style_arrows(sink: Sink, path: str, radius: float, colour: int, order: int) -> None:
+    sink.static(path, rr.Arrows2D.from_fields(radii=radius, colors=colour, draw_order=10.0 + order))
 
 
-def _draw_floor(stream: Stream, scene: Scene) -> None:
+def _draw_floor(sink: Sink, scene: Scene) -> None:
     scale = PIXELS / max(scene.width, scene.height)
-    stream.static(
+    sink.static(
         scheme.GROUND,
         rr.Transform3D(
             translation=[0.0, scene.height, 0.0], mat3x3=np.diag([1 / scale, -1 / scale, 1.0])
@@ -148,31 +146,31 @@ def _draw_floor(stream: Stream, scene: Scene) -> None:
     )
     side = max(scene.width, scene.height)
     _outline(
-        stream,
+        sink,
         scheme.WALLS,
         [[(0, 0), (scene.width, 0), (scene.width, scene.height), (0, scene.height)]],
         scheme.WALL_COLOUR,
         0.002 * side,
     )
     if scene.hole is not None:
-        _outline(stream, scheme.HOLE, [scene.hole], scheme.HOLE_COLOUR, 0.0015 * side)
-    _outline(stream, scheme.OBSTACLES, scene.obstacles, scheme.OBSTACLE_COLOUR, 0.002 * side)
-    _draw_scales(stream, scene)
+        _outline(sink, scheme.HOLE, [scene.hole], scheme.HOLE_COLOUR, 0.0015 * side)
+    _outline(sink, scheme.OBSTACLES, scene.obstacles, scheme.OBSTACLE_COLOUR, 0.002 * side)
+    _draw_scales(sink, scene)
 
 
 def _outline(
-    stream: Stream, path: str, outlines: list[list[Point]], colour: int, radius: float
+    sink: Sink, path: str, outlines: list[list[Point]], colour: int, radius: float
 ) -> None:
     """Closed lines around shapes."""
     if outlines:
         closed = [np.array([*outline, outline[0]], np.float32) for outline in outlines]
-        stream.static(
+        sink.static(
             path,
             rr.LineStrips2D(closed, colors=colour, radii=radius, draw_order=-50.0),
         )
 
 
-def _draw_scales(stream: Stream, scene: Scene) -> None:
+def _draw_scales(sink: Sink, scene: Scene) -> None:
     """Metres along two walls, and what colour means how much energy."""
     side = max(scene.width, scene.height)
     step = next(s for s in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 1e9) if side / s <= 6.0)
@@ -188,7 +186,7 @@ def _draw_scales(stream: Stream, scene: Scene) -> None:
     for share, unit in ((0.0, ""), (0.5, ""), (1.0, " J")):
         y = low + share * (high - low) + hang
         marks.append((left + width + 0.05 * side, y, f"{share * capacity:g}{unit}"))
-    stream.static(
+    sink.static(
         scheme.SCALES,
         rr.Points2D(
             [(x, y) for x, y, _ in marks],
@@ -198,7 +196,7 @@ def _draw_scales(stream: Stream, scene: Scene) -> None:
             show_labels=True,
         ),
     )
-    stream.static(
+    sink.static(
         scheme.ENERGY_SCALE,
         rr.Transform3D(
             translation=[left, low, 0.0], mat3x3=np.diag([width, (high - low) / 256, 1.0])

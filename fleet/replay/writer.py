@@ -1,6 +1,6 @@
 """The process that draws a recording: it reads what happens from its input, and keeps the file.
 
-Run by :class:`fleet.replay.scribe.Scribe` as ``python -m fleet.replay.writer``.
+Run by :class:`fleet.replay.writer_process.WriterProcess` as ``python -m fleet.replay.writer``.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import numpy as np
 
 from fleet.motion import SAMPLE_FIELDS
 from fleet.replay.columns import Moment
-from fleet.replay.journal import Entry, Told, TripEnd, receive
-from fleet.replay.story import Conversation, Page, Story, UnderWay
-from fleet.replay.stream import Stream
+from fleet.replay.journal import Note, RecordedLine, TripEnd, receive
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer, OpenConversation, UnderWay
 from protocols.messages import Award, Bid, Move, Point, RobotId
 
 BACKLOG = 64  # frames that wait to be drawn before the run must wait too
@@ -27,140 +27,146 @@ CHUNK_ROUNDS = 50  # that are written together: a chunk costs 2 kB, however litt
 CHUNK_POSES = 100_000  # or so many poses
 
 
-class Teller:
-    """Takes the notes of a run and tells them, in order, to every page."""
+class LayerDispatcher:
+    """Takes the notes of a run and tells them, in order, to every layer."""
 
     def __init__(
-        self, story: Story, pages: Sequence[Page], stream: Stream, chunk_rounds: int = CHUNK_ROUNDS
+        self,
+        state: FleetState,
+        layers: Sequence[Layer],
+        sink: Sink,
+        chunk_rounds: int = CHUNK_ROUNDS,
     ) -> None:
         self._chunk_rounds = chunk_rounds
-        self._poses = 0  # told since pages were sent
+        self._poses = 0  # told since layers were sent
         self._sent_round = 0
-        self._story = story
-        self._pages = pages
-        self._stream = stream
+        self._state = state
+        self._layers = layers
+        self._sink = sink
         self._number = 0  # transmissions told so far
         self._floor = 0  # of the msg timeline: it never runs backwards
-        for page in pages:
-            page.started(story)
+        for layer in layers:
+            layer.run_started(state)
 
-    def tell(self, entries: Sequence[Entry]) -> None:
-        """Replay some rounds; now and then, pass on what the pages made of them."""
-        for name, *what in entries:
+    def tell(self, notes: Sequence[Note]) -> None:
+        """Replay some rounds; now and then, pass on what the layers made of them."""
+        for name, *what in notes:
             getattr(self, f"_{name}")(*what)
-        waiting = self._story.round - self._sent_round
+        waiting = self._state.round - self._sent_round
         if waiting >= self._chunk_rounds or self._poses >= CHUNK_POSES:
             self._send()
 
     def finish(self, summary: dict[str, Any] | None) -> None:
         """The end."""
         at = self._moment(self._number + 1)
-        for page in self._pages:
-            page.finished(at, summary)
+        for layer in self._layers:
+            layer.run_ended(at, summary)
         self._send()
 
-    def _said(self, time: float, event: int, first: int, *columns: Sequence[Any]) -> None:
-        story = self._story
-        story.now = time
-        talk = story.talks.get(event)
+    def _transmitted(self, time: float, event: int, first: int, *columns: Sequence[Any]) -> None:
+        state = self._state
+        state.now = time
+        conversation = state.conversations.get(event)
         for number, (kind, sender, receiver, bid, heard, attempts) in enumerate(
             zip(*columns, strict=True), first
         ):
             self._number = number
             cost, bidder = bid or (None, None)
-            line = Told(number, time, event, kind, sender, receiver, cost, bidder, heard, attempts)
-            if talk is not None:
-                talk.lines.append(line)
+            line = RecordedLine(
+                number, time, event, kind, sender, receiver, cost, bidder, heard, attempts
+            )
+            if conversation is not None:
+                conversation.lines.append(line)
             at = self._moment(number)
-            for page in self._pages:
-                page.told(at, line)
+            for layer in self._layers:
+                layer.transmitted(at, line)
 
-    def _air(self, time: float, on_air: list[RobotId]) -> None:
-        story = self._story
-        story.now = time
-        story.on_air = np.zeros(story.n, bool)
-        story.on_air[on_air] = True
+    def _air_changed(self, time: float, on_air: list[RobotId]) -> None:
+        state = self._state
+        state.now = time
+        state.on_air = np.zeros(state.n, bool)
+        state.on_air[on_air] = True
 
-    def _raised(self, time: float, event: int, site: Point, source: RobotId) -> None:
-        story = self._story
-        story.now = time
-        story.round = max(story.round, event + 1)
-        story.sites[event] = site
-        story.talks[event] = Conversation(event, site, source)
+    def _event_raised(self, time: float, event: int, site: Point, source: RobotId) -> None:
+        state = self._state
+        state.now = time
+        state.round = max(state.round, event + 1)
+        state.sites[event] = site
+        state.conversations[event] = OpenConversation(event, site, source)
         at = self._moment(self._number + 1)
-        for page in self._pages:
-            page.raised(at, event, source)
+        for layer in self._layers:
+            layer.event_raised(at, event, source)
 
     def _awarded(
         self, time: float, event: int, winner: RobotId | None, auctioneer: RobotId,
         bids: list[tuple[Any, ...]], moves: list[tuple[Any, ...]],
     ) -> None:  # fmt: skip
-        self._story.now = time
+        self._state.now = time
         at = self._moment(self._number)
         offers = map(Bid._make, zip(*bids, strict=True))
         ways = map(Move._make, zip(*moves, strict=True))
         award = Award(winner, auctioneer, tuple(offers), tuple(ways))
-        for page in self._pages:
-            page.awarded(at, event, award)
+        for layer in self._layers:
+            layer.awarded(at, event, award)
 
-    def _broken(self, time: float, event: int, reason: str) -> None:
-        self._story.now = time
+    def _broken_off(self, time: float, event: int, reason: str) -> None:
+        self._state.now = time
         at = self._moment(self._number)
-        for page in self._pages:
-            page.broken(at, event, reason)
+        for layer in self._layers:
+            layer.broken_off(at, event, reason)
 
-    def _over(self, time: float, event: int, outcome: str) -> None:
-        self._story.now = time
-        self._story.sites.pop(event, None)
+    def _event_closed(self, time: float, event: int, outcome: str) -> None:
+        self._state.now = time
+        self._state.sites.pop(event, None)
         at = self._moment(self._number + 1)
-        for page in self._pages:
-            page.over(at, event, outcome)
-        self._story.talks.pop(event, None)
+        for layer in self._layers:
+            layer.event_closed(at, event, outcome)
+        self._state.conversations.pop(event, None)
 
     def _departed(self, time: float, event: int, robot: RobotId, site: Point, errand: bool) -> None:
-        story = self._story
-        story.now = time
-        story.under_way[robot] = UnderWay(event, story.at(robot), site, time, errand)
+        state = self._state
+        state.now = time
+        state.under_way[robot] = UnderWay(event, state.at(robot), site, time, errand)
         at = self._moment(self._number)
-        for page in self._pages:
-            page.departed(at, robot)
+        for layer in self._layers:
+            layer.departed(at, robot)
 
     def _planned(self, time: float, robot: RobotId, way: bytes) -> None:
-        self._story.now = time
+        self._state.now = time
         at = self._moment(self._number)
-        for page in self._pages:
-            page.planned(at, robot, np.frombuffer(way).reshape(-1, 2))
+        for layer in self._layers:
+            layer.planned(at, robot, np.frombuffer(way).reshape(-1, 2))
 
     def _moved(self, rows: bytes) -> None:
         samples = np.frombuffer(rows).reshape(-1, len(SAMPLE_FIELDS))
         self._poses += len(samples)
-        self._story.now = float(samples[-1, 1])
+        self._state.now = float(samples[-1, 1])
         robots = samples[:, 0].astype(int)
-        self._story.positions[robots] = samples[:, 2:4]
-        self._story.energies[robots] = samples[:, 5]
+        self._state.positions[robots] = samples[:, 2:4]
+        self._state.energies[robots] = samples[:, 5]
         at = self._moment(self._number + 1)
-        for page in self._pages:
-            page.moved(at, samples)
+        for layer in self._layers:
+            layer.moved(at, samples)
 
-    def _ended(self, event: int, trip: tuple[Any, ...], charges: list[float]) -> None:
-        story, end = self._story, TripEnd(*trip)
-        story.now = end.ended
-        story.positions[end.robot] = end.end
-        story.energies[slice(None) if len(charges) == story.n else [end.robot]] = charges
-        story.on_air &= story.energies > 0.0
-        del story.under_way[end.robot]
+    def _trip_ended(self, event: int, trip: tuple[Any, ...], charges: list[float]) -> None:
+        state, end = self._state, TripEnd(*trip)
+        state.now = end.ended
+        state.positions[end.robot] = end.end
+        state.energies[slice(None) if len(charges) == state.n else [end.robot]] = charges
+        state.on_air &= state.energies > 0.0
+        del state.under_way[end.robot]
         at = self._moment(self._number + 1)
-        for page in self._pages:
-            page.ended(at, event, end)
+        for layer in self._layers:
+            layer.trip_ended(at, event, end)
 
     def _moment(self, msg: int) -> Moment:
         self._floor = max(self._floor, msg)
-        return Moment(self._story.now, self._story.round, self._floor)
+        return Moment(self._state.now, self._state.round, self._floor)
 
     def _send(self) -> None:
-        self._poses, self._sent_round = 0, self._story.round
-        for page in self._pages:
-            page.send(self._stream)
+        self._poses, self._sent_round = 0, self._state.round
+        for layer in self._layers:
+            layer.send(self._sink)
 
 
 class NoPandas(MetaPathFinder):
@@ -181,7 +187,7 @@ def main() -> None:
     frames = _read_ahead(open(0, "rb", closefd=False))  # noqa: SIM115 - as long as we live
     sys.meta_path.insert(0, NoPandas())
     from fleet.replay.blueprint import Stage, blueprint
-    from fleet.replay.pages import pages
+    from fleet.replay.layers import layers
     from fleet.replay.scene import describe, draw_scene
 
     gc.freeze()  # what was imported is here to stay; looking through it takes time
@@ -195,30 +201,30 @@ def main() -> None:
         import rerun
 
         rerun.set_strict_mode(True)
-    stream = Stream(path, live, key)
-    teller: Teller | None = None
+    sink = Sink(path, live, key)
+    dispatcher: LayerDispatcher | None = None
     summary: dict[str, Any] | None = None
     try:
         for tag, *content in frames:
             if tag == "scene":
                 (scene,) = content
-                story = Story(scene)
-                stage = Stage(scene.width, scene.height, story.mark, story.capacity)
-                stream.open(blueprint(stage))
-                describe(stream, scene, key, properties)
-                draw_scene(stream, story)
-                teller = Teller(story, pages(), stream, 1 if live else CHUNK_ROUNDS)
+                state = FleetState(scene)
+                stage = Stage(scene.width, scene.height, state.mark, state.capacity)
+                sink.open(blueprint(stage))
+                describe(sink, scene, key, properties)
+                draw_scene(sink, state)
+                dispatcher = LayerDispatcher(state, layers(), sink, 1 if live else CHUNK_ROUNDS)
             elif tag == "batch":
-                assert teller is not None
-                (entries,) = content
-                teller.tell(entries)
+                assert dispatcher is not None
+                (notes,) = content
+                dispatcher.tell(notes)
             elif tag == "summary":
                 (summary,) = content
-                stream.properties("summary", summary)
-        if teller is not None:
-            teller.finish(summary)
+                sink.properties("summary", summary)
+        if dispatcher is not None:
+            dispatcher.finish(summary)
     finally:
-        stream.close()
+        sink.close()
 
 
 def _read_ahead(pipe: IO[bytes]) -> Iterator[tuple[Any, ...]]:

@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 
 from fleet.crew import Fleet
 from fleet.motion import Trip
-from fleet.observer import Observer, Sent
+from fleet.observer import Excerpt, Observer
 from fleet.results import Summary
 from protocols.messages import Award, Event, RobotId
 
@@ -46,12 +46,12 @@ class Rounds(Observer):
         }
         self.rows.append(row)
 
-    def sent(self, sent: Sent) -> None:
+    def transmitted(self, excerpt: Excerpt) -> None:
         """Count."""
-        row = self._of[sent.event]
-        row["messages"] += 1
-        row["frames"] += sent.attempts
-        row["hops"] += sent.transmission.kind in {"route-greedy", "route-face"}
+        row, said = self._of[excerpt.event], excerpt.transmissions
+        row["messages"] += len(said)
+        row["frames"] += sum(excerpt.attempts)
+        row["hops"] += sum(t.kind in {"route-greedy", "route-face"} for t in said)
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """Who got it."""

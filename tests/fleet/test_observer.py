@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import fleet
-from fleet.observer import Audience, Excerpt, Observer, Sent
+from fleet.observer import Audience, Excerpt, Observer, TranscriptLine
 from fleet.radio import BrokenProtocol
 from protocols.messages import Transmission
 
@@ -17,8 +17,8 @@ class Hears(Observer):
     def __init__(self):
         self.lines = []
 
-    def sent(self, sent):
-        self.lines.append(sent)
+    def transmitted(self, excerpt):
+        self.lines.extend(excerpt.lines())
 
 
 class Reads(Observer):
@@ -27,7 +27,7 @@ class Reads(Observer):
     def __init__(self):
         self.excerpts = []
 
-    def transcribed(self, excerpt):
+    def transmitted(self, excerpt):
         self.excerpts.append(excerpt)
 
 
@@ -42,11 +42,12 @@ class Stumbles(Observer):
 
 def test_an_excerpt_is_told_whole_or_line_by_line():
     hears, reads = Hears(), Reads()
-    Audience([hears, reads]).transcribed(EXCERPT)
+    Audience([hears, reads]).transmitted(EXCERPT)
     assert reads.excerpts == [EXCERPT]
     assert hears.lines == [
-        Sent(7, 2.5, 3, LINES[0], (1,), 1), Sent(8, 2.5, 3, LINES[1], (0, 2), 4)
-    ]  # fmt: skip
+        TranscriptLine(7, 2.5, 3, LINES[0], (1,), 1),
+        TranscriptLine(8, 2.5, 3, LINES[1], (0, 2), 4),
+    ]
 
 
 def test_what_nobody_overrides_is_told_to_nobody(monkeypatch):
@@ -54,11 +55,10 @@ def test_what_nobody_overrides_is_told_to_nobody(monkeypatch):
         raise AssertionError("told of what it does not care for")
 
     audience = Audience([Reads()])
-    for hook in ("awarded", "relinked", "sent"):
+    for hook in ("awarded", "relinked"):
         monkeypatch.setattr(Observer, hook, fail)
     audience.awarded(None, None, 0.0)
     audience.relinked(0.0)
-    audience.transcribed(EXCERPT)
 
 
 def test_hooks_may_be_set_on_an_observer_or_be_those_of_another():
@@ -70,9 +70,9 @@ def test_hooks_may_be_set_on_an_observer_or_be_those_of_another():
             return getattr(self._inner, name)
 
     plain, seen = Observer(), []
-    plain.sent = seen.append
+    plain.transmitted = lambda excerpt: seen.extend(excerpt.lines())
     hears = Hears()
-    Audience([plain, Wrapper(hears)]).transcribed(EXCERPT)
+    Audience([plain, Wrapper(hears)]).transmitted(EXCERPT)
     assert seen == hears.lines == EXCERPT.lines()
     assert Audience([Wrapper(hears)]).listens
     assert not Audience([Wrapper(Stumbles())]).listens
@@ -118,4 +118,20 @@ def test_what_was_said_is_read_out_even_if_the_protocol_breaks(monkeypatch):
         monkeypatch.setattr("fleet.assembly.bind_protocol", lambda _, told=protocol: told)
         with pytest.raises(error):
             fleet.run(fleet.Scenario.of(motion="straight", rounds=3), [hears])
-        assert [sent.transmission.kind for sent in hears.lines] == kinds
+        assert [line.transmission.kind for line in hears.lines] == kinds
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [("award", "awarded"), ("trip_end", "trip_ended"), ("sent", "transmitted"), ("Moved", "moved")],
+)
+def test_a_misspelt_hook_is_told_with_the_one_that_was_meant(name, meant):
+    observer = type("Mine", (Observer,), {name: lambda *_: None})()
+    with pytest.raises(TypeError, match=rf"Mine\.{name} is no hook .* did you mean '{meant}'\?"):
+        Audience([observer])
+
+
+def test_methods_of_an_observers_own_and_what_it_keeps_are_left_alone():
+    observer = type("Mine", (Observer,), {"totals": lambda *_: None, "_award": lambda *_: None})()
+    observer.awards = []
+    Audience([observer])

@@ -31,8 +31,8 @@ class Witness(Observer):
     def event_raised(self, event, source, time):
         self.raised.append((event, source, time))
 
-    def sent(self, sent):
-        self.said.append(sent)
+    def transmitted(self, excerpt):
+        self.said.extend(excerpt.lines())
 
     def awarded(self, event, award, time):
         self.awards.append(award)

@@ -21,8 +21,8 @@ class Log(Observer):
     def __init__(self):
         self.said, self.awards, self.trips = defaultdict(list), {}, []
 
-    def sent(self, sent):
-        self.said[sent.event].append((sent.transmission, sent.heard))
+    def transmitted(self, excerpt):
+        self.said[excerpt.event] += zip(excerpt.transmissions, excerpt.heard, strict=True)
 
     def awarded(self, event, award, time):
         self.awards[event.id] = award

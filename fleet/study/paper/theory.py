@@ -10,7 +10,7 @@ import numpy as np
 
 from fleet.assembly import run
 from fleet.crew import Fleet
-from fleet.observer import Observer, Sent
+from fleet.observer import Excerpt, Observer
 from fleet.scenario.model import Scenario
 from fleet.study.paper.campaign import RANGES
 from fleet.study.paper.claims import Claim, judged
@@ -108,10 +108,10 @@ class BoundsWitness(Observer):
         """Keep the live topology."""
         self._neighbours = fleet.topology.neighbours
 
-    def sent(self, sent: Sent) -> None:
+    def transmitted(self, excerpt: Excerpt) -> None:
         """Count."""
-        self._said += 1
-        self._hops += sent.transmission.kind.startswith("route")
+        self._said += len(excerpt.transmissions)
+        self._hops += sum(t.kind.startswith("route") for t in excerpt.transmissions)
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """Compare with the bounds of the graph as it is now."""

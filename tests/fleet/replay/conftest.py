@@ -11,7 +11,7 @@ import pytest
 from fleet.assembly import prepare
 from fleet.observer import Observer
 from fleet.replay.readback import Recording
-from fleet.replay.recording import RerunRecorder
+from fleet.replay.rerun_recorder import RerunRecorder
 from fleet.results import Summary
 from fleet.scenario.loading import scenario_from
 
@@ -35,8 +35,8 @@ class Witness(Observer):
         silent = [robot.id for robot in self.fleet.robots if not robot.on_air]
         self.silent.append((time, places, silent))
 
-    def sent(self, sent):
-        self.said.append(sent)
+    def transmitted(self, excerpt):
+        self.said.extend(excerpt.lines())
 
     def awarded(self, event, award, time):
         self.awards.append((event, award, time, len(self.said)))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fleet.replay import scheme
-from fleet.replay.view import serve
+from fleet.replay.viewer import serve
 
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [  # WebGL on a machine without a graphics card

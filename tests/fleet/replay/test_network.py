@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.replay.pages.network import (
-    Reach,
+from fleet.replay.layers.network import (
+    MoverReach,
     any_spell,
     component_counts,
     disc_spell,
@@ -40,7 +40,7 @@ def test_one_mover_in_the_gabriel_graph(fleet, path, data):
     robot = data.draw(st.integers(0, len(fleet) - 1))
     silent = data.draw(st.lists(st.integers(0, len(fleet) - 1), max_size=2))
     places[[k for k in silent if k != robot]] = np.nan
-    reach = Reach.of(places, robot, course, 1.5)
+    reach = MoverReach.of(places, robot, course, 1.5)
     disc = disc_spell(whole(places, 1.5, "udg"), robot, reach)
     gabriel = gabriel_spell(whole(places, 1.5, "gabriel"), disc.fixed, places, robot, reach)
     for spell, graph in ((disc, "udg"), (gabriel, "gabriel")):

@@ -17,11 +17,11 @@ import pytest
 from fleet.motion import Trip
 from fleet.observer import Observer
 from fleet.replay import recorder, scheme
-from fleet.replay.errors import CannotRecord
+from fleet.replay.failures import CannotRecord
 from fleet.replay.journal import TripEnd
 from fleet.replay.readback import Recording
-from fleet.replay.recording import RerunRecorder
-from fleet.replay.view import viewer_binary, viewer_environment
+from fleet.replay.rerun_recorder import RerunRecorder
+from fleet.replay.viewer import viewer_binary, viewer_environment
 from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import scenario_from
 
@@ -127,7 +127,7 @@ def test_a_run_that_is_killed_leaves_what_it_had_handed_on(tmp_path):
         import os, signal
         from pathlib import Path
         from fleet.observer import Observer
-        from fleet.replay.recording import RerunRecorder
+        from fleet.replay.rerun_recorder import RerunRecorder
         from fleet.assembly import run
         from fleet.scenario.loading import scenario_from
 
@@ -140,7 +140,7 @@ def test_a_run_that_is_killed_leaves_what_it_had_handed_on(tmp_path):
 
         scenario = scenario_from({{"motion": "straight", "robots": 40, "range": 3.0, "seed": 4}})
         watching = RerunRecorder(Path({str(path)!r}), key="k", properties={{}}, flush_rounds=5)
-        print(watching.scribe.process.pid, flush=True)
+        print(watching.writer.process.pid, flush=True)
         run(scenario, [Dies(), watching])
     """
     killed = subprocess.Popen(
@@ -172,7 +172,7 @@ def test_the_end_of_a_trip_is_the_beginning_of_its_fields():
 
 def test_a_recording_that_fails_says_so(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={}, flush_rounds=1)
-    watching.scribe.process.kill()
+    watching.writer.process.kill()
     with pytest.raises(RuntimeError, match=r"the recording .*run\.rrd broke off"):
         simulation([watching], rounds=10).run()
 
@@ -191,7 +191,7 @@ def test_a_full_disk_is_said_in_a_sentence():
 
 def test_what_the_writer_died_of_is_told(tmp_path):
     watching = RerunRecorder(tmp_path / "run.rrd", key="k", properties={})
-    watching.scribe.tell("batch", "nonsense")
+    watching.writer.tell("batch", "nonsense")
     with pytest.raises(RuntimeError, match="AssertionError") as caught:
         watching.closed()
     assert not isinstance(caught.value, CannotRecord)  # it is our fault: nobody may hide it

@@ -9,7 +9,7 @@ import pytest
 
 from fleet.replay import scheme
 from fleet.replay.readback import Recording
-from fleet.replay.recording import RerunRecorder
+from fleet.replay.rerun_recorder import RerunRecorder
 from fleet.replay.scheme import SIM_TIME
 
 from .conftest import Witness, simulation

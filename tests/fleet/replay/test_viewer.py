@@ -10,10 +10,10 @@ import pytest
 
 from fleet.observer import Observer
 from fleet.replay import scheme
-from fleet.replay.compare import arrange
+from fleet.replay.comparison import arrange
 from fleet.replay.headless import HeadlessViewer, NoViewer
 from fleet.replay.readback import Recording
-from fleet.replay.recording import RerunRecorder
+from fleet.replay.rerun_recorder import RerunRecorder
 
 from .conftest import simulation
 

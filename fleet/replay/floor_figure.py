@@ -15,8 +15,8 @@ from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
 from fleet.replay import scheme
+from fleet.replay.colormap import TABLE
 from fleet.replay.readback import Recording, Values
-from fleet.replay.shades import TABLE
 
 FloatArray = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def columns(width: float) -> int:
     return max(1, min(4, int((width - 0.2) / COLUMN)))
 
 
-class Sketch:
+class FloorFigure:
     """Draws a recording at one moment after another.
 
     Raises:

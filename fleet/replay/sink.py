@@ -14,7 +14,7 @@ from fleet.replay.columns import Index, Moment, single
 from fleet.replay.scheme import APPLICATION
 
 
-class Stream:
+class Sink:
     """An open recording."""
 
     def __init__(self, path: str | None, live: str | None, key: str) -> None:

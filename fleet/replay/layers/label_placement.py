@@ -19,8 +19,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 Box: TypeAlias = tuple[float, ...]  # x and y of the middle, width, height [m]
 
 
-class Labels:
-    """Labels of what is on a ``floor`` (width, height) [m]. Once placed, they stay."""
+class LabelPlacement:
+    """LabelPlacement of what is on a ``floor`` (width, height) [m]. Once placed, they stay."""
 
     def __init__(self, floor: Point) -> None:
         width, height = floor

@@ -10,10 +10,10 @@ import pyarrow as pa
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, pairs, reals, texts
-from fleet.replay.journal import Told
+from fleet.replay.journal import RecordedLine
 from fleet.replay.scheme import AUCTIONEER_COLOUR, CALLED_COLOUR, TREE, WINNER_TEXT, kind_colour
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import Award, Point, RobotId
 
 WIDTH, HEIGHT = 480.0, 150.0  # of the plane that trees are laid out on
@@ -30,26 +30,26 @@ class Grown(NamedTuple):
     links: list[tuple[RobotId, RobotId]]
 
 
-class Tree(Page):
+class AuctionTree(Layer):
     """Laid out when the conversation is over, so that nobody moves while it grows."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[Grown, dict[RobotId, Point]]] = []
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """No auction yet."""
-        self._story = story
+        self._state = state
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """The table is cleared."""
         self._rows.append((Grown(at, [], [], [], []), {}))
 
     def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Now the whole tree is known: tell how it grew."""
-        talk, auctioneer = self._story.talks[event], award.auctioneer
-        steps = grow(talk.lines, auctioneer, at.round)
-        parents = talk.parents
-        places = lay_out(parents, auctioneer, self._story)
+        conversation, auctioneer = self._state.conversations[event], award.auctioneer
+        steps = grow(conversation.lines, auctioneer, at.round)
+        parents = conversation.parents
+        places = lay_out(parents, auctioneer, self._state)
         stride = max(1, ceil(len(steps) / MANY_STEPS))
         self._rows += [(step, places) for step in steps[::-stride][::-1]]
         costs = {robot: cost for cost, robot in award.bids}
@@ -70,7 +70,7 @@ class Tree(Page):
         )  # fmt: skip
         self._rows.append((final, places))
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Nodes and edges."""
         if not self._rows:
             return
@@ -83,7 +83,7 @@ class Tree(Page):
         ]
         ids = [f"r{robot}" for step in steps for robot in step.robots]
         links = [link for step in steps for link in step.links]
-        stream.rows(
+        sink.rows(
             TREE,
             [step.at for step in steps],
             column(rr.GraphNodes.descriptor_node_ids(), texts(ids), nodes),
@@ -116,7 +116,7 @@ class Tree(Page):
         self._rows = []
 
 
-def grow(lines: list[Told], auctioneer: RobotId, round_: int) -> list[Grown]:
+def grow(lines: list[RecordedLine], auctioneer: RobotId, round_: int) -> list[Grown]:
     """The tree after each call and each bid."""
     steps: list[Grown] = []
     labels, paint = {auctioneer: f"r{auctioneer}"}, {auctioneer: AUCTIONEER_COLOUR}
@@ -140,7 +140,7 @@ def grow(lines: list[Told], auctioneer: RobotId, round_: int) -> list[Grown]:
 
 
 def lay_out(
-    parents: dict[RobotId, RobotId], auctioneer: RobotId, story: Story
+    parents: dict[RobotId, RobotId], auctioneer: RobotId, state: FleetState
 ) -> dict[RobotId, Point]:
     """A place for every robot: layers by depth, from west to east as they stand on the floor."""
     below: dict[RobotId, list[RobotId]] = {auctioneer: []}
@@ -155,7 +155,7 @@ def lay_out(
     stack = [(root, 0, False) for root in reversed(roots)]
     while stack:
         robot, layer, done = stack.pop()
-        children = sorted(below[robot], key=lambda child: (story.at(child), child))
+        children = sorted(below[robot], key=lambda child: (state.at(child), child))
         if done or not children:
             depth[robot] = layer
             if children:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from fleet.motion import Trip
 from fleet.observer import Excerpt, Observer
-from fleet.replay.journal import RELOCATED, Entry, Scene, TripEnd
-from fleet.replay.scribe import Scribe
+from fleet.replay.journal import RELOCATED, Note, Scene, TripEnd
+from fleet.replay.writer_process import WriterProcess
 from protocols.messages import Award, Event, Move, RobotId
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class RerunRecorder(Observer):
         flush_rounds: rounds between two times that the notes are handed on.
         sample_interval: simulated time between recorded poses of a moving robot [s].
         strict: data that Rerun would warn of ends the recording.
-        scribe: who draws; None: one is started.
+        writer: who draws; None: one is started.
 
     Raises:
         ValueError: there is nowhere to record to, or the file cannot be written.
@@ -59,7 +59,7 @@ class RerunRecorder(Observer):
         flush_rounds: int = 25,
         sample_interval: float = 0.05,
         strict: bool = False,
-        scribe: Scribe | None = None,
+        writer: WriterProcess | None = None,
     ) -> None:
         if path is None and not live:
             raise ValueError("neither a file nor a viewer to record to; expected at least one")
@@ -75,20 +75,20 @@ class RerunRecorder(Observer):
         self._live = bool(live)
         self._batteries: list[Battery] = []
         self._all_drain = True  # also robots that stand still
-        self._entries: list[Entry] = []
-        self._note = self._entries.append
+        self._notes: list[Note] = []
+        self._note = self._notes.append
         self._lines = 0  # of the transcript, and
         self._poses = 0  # since the last flush
         self._latest = -1  # id of the latest event
         self._rounds = 0  # events since the last flush
         self._flushed = time.monotonic()
         if live is True:
-            from fleet.replay.view import spawn_viewer
+            from fleet.replay.viewer import spawn_viewer
 
             live = spawn_viewer()
-        self.scribe = Scribe() if scribe is None else scribe
-        self.scribe.name = str(path) if path is not None else "for the viewer"
-        self.scribe.tell(
+        self.writer = WriterProcess() if writer is None else writer
+        self.writer.name = str(path) if path is not None else "for the viewer"
+        self.writer.tell(
             "open", None if path is None else str(path.absolute()), live or None, key,
             _plain(properties), strict,
         )  # fmt: skip
@@ -116,11 +116,11 @@ class RerunRecorder(Observer):
             world=labels.world,
             seed=labels.seed,
         )
-        self.scribe.tell("scene", scene)
+        self.writer.tell("scene", scene)
 
     def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
         """Note it."""
-        self._note(("air", time, list(on_air)))
+        self._note(("air_changed", time, list(on_air)))
 
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """Note it; a new event is also the moment to send what the last rounds left."""
@@ -129,14 +129,16 @@ class RerunRecorder(Observer):
             if self._rounds == self._flush_rounds or self._due():
                 self.flush()
             self._rounds += 1
-        self._note(("raised", time, event.id, event.position, source))
+        self._note(("event_raised", time, event.id, event.position, source))
 
-    def transcribed(self, excerpt: Excerpt) -> None:
+    def transmitted(self, excerpt: Excerpt) -> None:
         """Note it."""
         first, time, event, transmissions, heard, attempts = excerpt
         kinds, senders, receivers, bids = zip(*transmissions, strict=True)
         offers = [None if bid is None else tuple(bid) for bid in bids]
-        self._note(("said", time, event, first, kinds, senders, receivers, offers, heard, attempts))
+        self._note(
+            ("transmitted", time, event, first, kinds, senders, receivers, offers, heard, attempts)
+        )
         self._lines += len(kinds)
         if self._lines > MANY_LINES:
             self.flush()
@@ -148,11 +150,11 @@ class RerunRecorder(Observer):
 
     def broken_off(self, event: Event, reason: str, time: float) -> None:
         """Note it."""
-        self._note(("broken", time, event.id, reason))
+        self._note(("broken_off", time, event.id, reason))
 
     def event_closed(self, event: Event, outcome: str, time: float) -> None:
         """Note it."""
-        self._note(("over", time, event.id, outcome))
+        self._note(("event_closed", time, event.id, outcome))
 
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """Note it."""
@@ -169,7 +171,7 @@ class RerunRecorder(Observer):
     def relocated(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
         end = trip.robot, RELOCATED, *trip[2:FLAT]
-        self._note(("ended", event.id, end, self._charges(trip.robot)))
+        self._note(("trip_ended", event.id, end, self._charges(trip.robot)))
 
     def moved(self, samples: NDArray[np.float64]) -> None:
         """Note the poses."""
@@ -181,14 +183,14 @@ class RerunRecorder(Observer):
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        self._note(("ended", event.id, trip[:FLAT], self._charges(trip.robot)))
+        self._note(("trip_ended", event.id, trip[:FLAT], self._charges(trip.robot)))
 
     def run_ended(self, summary: Summary) -> None:
         """Keep the summary with the recording, but for what differs from run to run."""
         self.flush()
         figures = summary.as_dict()
         del figures["wall_time"]
-        self.scribe.tell("summary", _plain(figures))
+        self.writer.tell("summary", _plain(figures))
 
     def closed(self) -> None:
         """Hand over the last notes and wait until the file is complete.
@@ -196,15 +198,15 @@ class RerunRecorder(Observer):
         Raises:
             RuntimeError: the recording could not be written.
         """
-        if self.scribe.alive:
+        if self.writer.alive:
             self.flush()
-        self.scribe.finish()
+        self.writer.finish()
 
     def flush(self) -> None:
         """Send the notes taken since the last time."""
-        if self._entries:
-            self.scribe.tell("batch", self._entries)
-        self._entries.clear()
+        if self._notes:
+            self.writer.tell("batch", self._notes)
+        self._notes.clear()
         self._lines = self._poses = self._rounds = 0
         self._flushed = time.monotonic()
 

@@ -11,7 +11,7 @@ from fleet.replay.scheme import TIMELINES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fleet.replay.sketch import Sketch
+    from fleet.replay.floor_figure import FloorFigure
 
 
 def picture(
@@ -41,28 +41,30 @@ def picture(
     """
     from matplotlib.figure import Figure
 
+    from fleet.replay.floor_figure import FloorFigure
     from fleet.replay.readback import Recording
-    from fleet.replay.sketch import Sketch
 
     kinds = Figure().canvas.get_supported_filetypes()
     check_ending(out, set(kinds), "picture")
     moment = the_moment(at)
-    sketch = Sketch(Recording(recording), theme)
-    figure = draw(sketch, *moment, size, dots_per_inch)
+    floor = FloorFigure(Recording(recording), theme)
+    figure = draw(floor, *moment, size, dots_per_inch)
     figure.savefig(out, facecolor=figure.get_facecolor())
     return out
 
 
-def draw(sketch: Sketch, timeline: str, moment: float, size: float, dots_per_inch: int) -> Figure:
+def draw(
+    floor: FloorFigure, timeline: str, moment: float, size: float, dots_per_inch: int
+) -> Figure:
     """A figure of the floor at a moment, ``size`` [in] wide."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(size, sketch.height(size)), dpi=dots_per_inch)
-    axes, bar = (figure.add_axes(box) for box in sketch.boxes(size))
-    sketch.draw(axes, timeline, moment)
-    sketch.colour_bar(bar)
+    figure = Figure(figsize=(size, floor.height(size)), dpi=dots_per_inch)
+    axes, bar = (figure.add_axes(box) for box in floor.boxes(size))
+    floor.draw(axes, timeline, moment)
+    floor.colour_bar(bar)
     figure.set_facecolor(axes.get_facecolor())
-    axes.set_title(sketch.caption(), color=axes.xaxis.label.get_color(), size=9, loc="left")
+    axes.set_title(floor.caption(), color=axes.xaxis.label.get_color(), size=9, loc="left")
     return figure
 
 

@@ -1,4 +1,4 @@
-"""The web viewer, served so that it talks to this machine only.
+"""The web viewer, served so that it conversations to this machine only.
 
 The page in the rerun wheel tells its makers that it is being used, and asks for fonts and news.
 It is handed on with a policy that browsers enforce: it may reach nobody but its own server.
@@ -54,7 +54,7 @@ def serving(parts: Mapping[str, Part], recording: Path) -> Iterator[str]:
             path = urlsplit(self.path).path
             if path == RECORDING:
                 with recording.open("rb") as file:
-                    self._send("application/octet-stream", file, recording.stat().st_size)
+                    self._send("application/octet-sink", file, recording.stat().st_size)
             elif path in parts:
                 part = parts[path]
                 self._send(part.kind, io.BytesIO(part.content), len(part.content))

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fleet.replay.colormap import TABLE, energy_colours
 from fleet.replay.columns import Index, Moment, pairs, segments, strips
-from fleet.replay.pages.frames import frames
-from fleet.replay.pages.labels import Labels
-from fleet.replay.pages.lifetime import ticks
-from fleet.replay.pages.talk import Growing, rim_to_rim
-from fleet.replay.pages.trips import dashes
-from fleet.replay.shades import TABLE, shade
+from fleet.replay.layers.arrows import Growing, rim_to_rim
+from fleet.replay.layers.drives import dashes
+from fleet.replay.layers.frames import frames
+from fleet.replay.layers.label_placement import LabelPlacement
+from fleet.replay.layers.lifetime import ticks
 
 AT = Moment(0.0, 1, 1)
 
@@ -90,7 +90,7 @@ def test_opposite_arrows_lie_side_by_side():
 
 
 def test_labels_keep_off_each_other():
-    labels = Labels((10.0, 10.0))
+    labels = LabelPlacement((10.0, 10.0))
     labels.clear()
     boxes = []
     for (x, y), letters in (((5.0, 5.0), 8), ((5.0, 5.2), 12), ((5.3, 5.0), 9)):
@@ -101,7 +101,7 @@ def test_labels_keep_off_each_other():
 
 
 def test_labels_keep_off_what_is_to_be_seen():
-    labels = Labels((10.0, 10.0))
+    labels = LabelPlacement((10.0, 10.0))
     labels.clear()
     assert labels.place(5.0, 5.0, 8)[1] > 5.2
     labels.clear()
@@ -111,7 +111,7 @@ def test_labels_keep_off_what_is_to_be_seen():
 
 def test_labels_keep_off_the_scales_beside_the_floor():
     for anchor in ((0.05, 5.0), (9.95, 5.0)):
-        labels = Labels((10.0, 10.0))
+        labels = LabelPlacement((10.0, 10.0))
         labels.clear()
         x, _ = labels.place(*anchor, 14)
         assert 0.5 * 14 * 0.21 - 0.2 <= x <= 10.2 - 0.5 * 14 * 0.21
@@ -119,7 +119,7 @@ def test_labels_keep_off_the_scales_beside_the_floor():
 
 def test_labels_stay_in_sight():
     for anchor in ((5.0, 0.1), (5.0, 9.9), (0.1, 9.9)):
-        labels = Labels((10.0, 10.0))
+        labels = LabelPlacement((10.0, 10.0))
         labels.clear()
         for _ in range(3):
             _, y = labels.place(*anchor, 10)
@@ -129,7 +129,7 @@ def test_labels_stay_in_sight():
 def test_labels_hide_few_robots():
     row = np.column_stack([np.linspace(3.0, 7.0, 30), np.full(30, 5.34)])
     for robots, expected in (([], 5.34), (row, 4.66)):
-        labels = Labels((10.0, 10.0))
+        labels = LabelPlacement((10.0, 10.0))
         labels.clear(robots)
         _, y = labels.place(5.0, 5.0, 8)
         assert y - 0.2 == pytest.approx(expected)
@@ -154,7 +154,7 @@ def test_ticks(size):
 def test_energy_grows_lighter():
     light = TABLE @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(light) > 0.0).mean() > 0.98
-    assert shade([0.0, 100.0, 250.0, -3.0], 100.0).tolist() == [
+    assert energy_colours([0.0, 100.0, 250.0, -3.0], 100.0).tolist() == [
         0x440154FF, 0xFDE725FF, 0xFDE725FF, 0x440154FF
     ]  # fmt: skip
 

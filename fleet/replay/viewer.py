@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from threading import current_thread, main_thread
 
-from fleet.replay.serving import LOOPBACK, Part, parts_of, serving
+from fleet.replay.web_server import LOOPBACK, Part, parts_of, serving
 
 PATIENCE = 30.0  # [s] for a viewer to start
 SETTLING = 0.5  # [s] in which it finds out that it cannot
@@ -94,7 +94,7 @@ def _web_viewer() -> dict[str, Part]:
 
 
 def spawn_viewer() -> str:
-    """Open a viewer that outlives this process; returns the address to stream to.
+    """Open a viewer that outlives this process; returns the address to sink to.
 
     Raises:
         ValueError: no window can be opened here.
@@ -146,7 +146,7 @@ def _ready(recordings: Sequence[Path], timeline: str | None) -> Iterator[Path]:
     if len(recordings) == 1 and timeline is None:
         yield recordings[0]
         return
-    from fleet.replay.compare import arrange
+    from fleet.replay.comparison import arrange
 
     with tempfile.TemporaryDirectory() as folder:
         arranged = Path(folder) / "arranged.rrd"

@@ -15,15 +15,15 @@ from contextlib import suppress
 from types import TracebackType
 from typing import IO, Any
 
-from fleet.replay.errors import CannotRecord
+from fleet.replay.failures import CannotRecord
 from fleet.replay.journal import send
 
 OUTSIDE = re.compile(r"[^:]*\(os error \d+\)|no viewer listens at \S+")
-"""What the scribe says when it is the machine that stops it: a full disk, a viewer that is gone."""
+"""What the writer says when it is the machine that stops it: a full disk, a viewer that is gone."""
 PIPE = 1 << 20  # [bytes] that it may lag behind before the run waits
 
 
-class Scribe:
+class WriterProcess:
     """A running :mod:`fleet.replay.writer`. It outlives an interrupted run while it has work.
 
     As a context it is sent away at the end, if it has not finished: no run has begun.
@@ -41,12 +41,12 @@ class Scribe:
             stderr=self._complaints,
             env={**os.environ, "PYTHONPATH": search},
             pipesize=PIPE,
-            start_new_session=True,  # Ctrl-C is for the run; the scribe finishes the file
+            start_new_session=True,  # Ctrl-C is for the run; the writer finishes the file
         )
         assert self.process.stdin is not None
         self._pipe = self.process.stdin
 
-    def __enter__(self) -> Scribe:
+    def __enter__(self) -> WriterProcess:
         return self
 
     def __exit__(

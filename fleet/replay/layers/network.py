@@ -76,7 +76,7 @@ def any_spell(
     return Spell(fixed, [without(codes, fixed) for codes in moments])
 
 
-class Reach(NamedTuple):
+class MoverReach(NamedTuple):
     """Whom a mover reaches at each of k moments."""
 
     robot: int
@@ -87,7 +87,9 @@ class Reach(NamedTuple):
     others: NDArray[np.intp]  # (p,) robots within range at that moment
 
     @classmethod
-    def of(cls, positions: FloatArray, robot: int, places: FloatArray, radio_range: float) -> Reach:
+    def of(
+        cls, positions: FloatArray, robot: int, places: FloatArray, radio_range: float
+    ) -> MoverReach:
         """Robots whose position is NaN are out of everybody's reach."""
         squared = _squared(places, positions)
         squared[:, robot] = np.inf
@@ -102,14 +104,14 @@ class Reach(NamedTuple):
         return np.split(codes, cuts)
 
 
-def disc_spell(before: Codes, robot: int, reach: Reach) -> Spell:
+def disc_spell(before: Codes, robot: int, reach: MoverReach) -> Spell:
     """Links of the unit disc graph while one robot drives; ``before``: before it set off."""
     fixed = before[~touching(before, reach.n, robot)]
     return Spell(fixed, reach.rows(np.ones(len(reach.others), bool)))
 
 
 def gabriel_spell(
-    before: Codes, disc: Codes, positions: FloatArray, robot: int, reach: Reach
+    before: Codes, disc: Codes, positions: FloatArray, robot: int, reach: MoverReach
 ) -> Spell:
     """Links of the Gabriel graph while one robot drives.
 
@@ -136,7 +138,7 @@ def gabriel_spell(
     )
 
 
-def _cut_off(positions: FloatArray, robot: int, reach: Reach) -> NDArray[np.bool_]:
+def _cut_off(positions: FloatArray, robot: int, reach: MoverReach) -> NDArray[np.bool_]:
     """Which of those within reach (p,) somebody keeps from the mover."""
     w = np.unique(reach.others)  # whoever comes between is within reach as well
     apart = _squared(positions[w], positions[w])

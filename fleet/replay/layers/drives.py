@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from fleet.replay.columns import Moment, column, segments, strips
 from fleet.replay.journal import TripEnd
 from fleet.replay.scheme import DRIVEN, PLANNED, RELOCATION, STRAIGHT
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import RobotId
 
 TRAIL_INTERVAL = 0.25  # [s] between two corners of a driven path
@@ -23,7 +23,7 @@ DASH = 0.12  # [m]
 FloatArray = NDArray[np.float64]
 
 
-class Trips(Page):
+class Drives(Layer):
     """The trips under way, and those ended since the latest event."""
 
     def __init__(self) -> None:
@@ -38,12 +38,12 @@ class Trips(Page):
         self._driven_rows: list[tuple[Moment, list[FloatArray]]] = []
         self._planned_rows: list[tuple[Moment, list[FloatArray]]] = []
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Nobody is under way."""
-        self._story = story
+        self._state = state
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
-        """Trips that have ended are history."""
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
+        """Drives that have ended are history."""
         for robot in self._ended:
             del self._dashes[robot], self._driven[robot]
         if self._ended & self._planned.keys():
@@ -57,12 +57,12 @@ class Trips(Page):
 
     def departed(self, at: Moment, robot: RobotId) -> None:
         """The straight line is known."""
-        trip = self._story.under_way[robot]
+        trip = self._state.under_way[robot]
         self._ended.discard(robot)
         if self._planned.pop(robot, None) is not None:
             self._draw_planned(at)
         (self._errands.add if trip.errand else self._errands.discard)(robot)
-        self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._story.mark / 0.1)
+        self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._state.mark / 0.1)
         self._driven[robot] = np.array([trip.origin])
         self._draw_straight(at)
         self._draw_driven(at)
@@ -74,7 +74,7 @@ class Trips(Page):
 
     def moved(self, at: Moment, samples: FloatArray) -> None:
         """The driven path grows."""
-        for robot, trip in self._story.under_way.items():
+        for robot, trip in self._state.under_way.items():
             mine = samples[samples[:, 0] == robot]
             if not len(mine):
                 continue
@@ -87,17 +87,17 @@ class Trips(Page):
                 others = [p for r, p in self._driven.items() if r != robot]
                 self._driven_rows.append((at._replace(time=time), [*others, path[:k]]))
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """It stays in sight until the next event."""
         self._ended.add(trip.robot)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Dashes and trails."""
         for path, dashed in ((STRAIGHT, self._straight_rows), (RELOCATION, self._errand_rows)):
             if not dashed:
                 continue
             when, rows = zip(*dashed, strict=True)
-            stream.rows(
+            sink.rows(
                 path,
                 when,
                 column(
@@ -114,7 +114,7 @@ class Trips(Page):
             when, rows = zip(*drawn, strict=True)
             ways = [way for row in rows for way in row]
             points = np.concatenate([np.empty((0, 2)), *ways])
-            stream.rows(
+            sink.rows(
                 path,
                 when,
                 column(

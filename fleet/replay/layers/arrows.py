@@ -10,7 +10,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment, colours, column, pairs
-from fleet.replay.journal import RELOCATED, Told, TripEnd
+from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
     CALLED_COLOUR,
@@ -24,8 +24,8 @@ from fleet.replay.scheme import (
     kind_colour,
     messages,
 )
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import KINDS, Award, RobotId
 
 RIM = 1.7  # where arrows begin and end, in radii of a robot from its middle
@@ -80,7 +80,7 @@ class Growing:
         self.rows = []
 
 
-class Talk(Page):
+class Arrows(Layer):
     """Arrows by kind, the transmission at the cursor, and rings around those involved."""
 
     def __init__(self) -> None:
@@ -91,11 +91,11 @@ class Talk(Page):
         self._parts: dict[RobotId, tuple[float, float, int]] = {}
         self._talking: set[int] = set()  # events under discussion
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Nobody has spoken."""
-        self._story = story
+        self._state = state
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """The floor is cleared, unless others are still talking."""
         self._talking.discard(event)
         if not self._talking:
@@ -107,13 +107,13 @@ class Talk(Page):
         self._packets.append((at, []))
         self._draw_rings(at)
 
-    def told(self, at: Moment, line: Told) -> None:
+    def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """One more arrow, or several if it was a broadcast."""
-        speaker = self._story.at(line.sender)
-        path, aims = messages(line.kind), [self._story.at(robot) for robot in line.heard]
+        speaker = self._state.at(line.sender)
+        path, aims = messages(line.kind), [self._state.at(robot) for robot in line.heard]
         if not line.heard:
             path = LOST
-            aims = [speaker if line.receiver is None else self._story.at(line.receiver)]
+            aims = [speaker if line.receiver is None else self._state.at(line.receiver)]
         new = [(*speaker, *aim) for aim in aims]
         growing = self._arrows.setdefault(path, Growing())
         if growing is not self._latest:
@@ -141,12 +141,12 @@ class Talk(Page):
             self._part(award.winner, WINNER_COLOUR)
         self._draw_rings(at)
 
-    def broken(self, at: Moment, event: int, reason: str) -> None:
+    def broken_off(self, at: Moment, event: int, reason: str) -> None:
         """Nobody speaks of it any more."""
         self._talking.discard(event)
         self._packets.append((at._replace(msg=at.msg + 1), []))
 
-    def over(self, at: Moment, event: int, outcome: str) -> None:
+    def event_closed(self, at: Moment, event: int, outcome: str) -> None:
         """Nor now."""
         self._talking.discard(event)
 
@@ -155,13 +155,13 @@ class Talk(Page):
         if self._parts.pop(robot, None) is not None:
             self._draw_rings(at)
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The one who went, where it stands now."""
         if trip.outcome != RELOCATED:
             self._part(trip.robot, WINNER_COLOUR)
             self._draw_rings(at)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Arrows, packets, rings."""
         for path, growing in self._arrows.items():
             if growing.rows:
@@ -169,7 +169,7 @@ class Talk(Page):
                 picked = [np.arange(a, b) for a, b in zip(starts, ends, strict=True)]
                 ends_of = np.array(growing.items, float).reshape(-1, 4)
                 self._send_arrows(
-                    stream, path, when, ends_of[np.concatenate(picked)], [*map(len, picked)]
+                    sink, path, when, ends_of[np.concatenate(picked)], [*map(len, picked)]
                 )
             growing.forget()
         if self._packets:
@@ -178,12 +178,12 @@ class Talk(Page):
             counts = [len(row) for row in rows]
             paint = colours([colour for row in rows for _, colour in row])
             tint = column(rr.Arrows2D.descriptor_colors(), paint, counts)
-            self._send_arrows(stream, PACKET, when, flat, counts, tint)
+            self._send_arrows(sink, PACKET, when, flat, counts, tint)
         if self._rings:
             when, rows = zip(*self._rings, strict=True)
             marks = np.array([ring for row in rows for ring in row], float).reshape(-1, 3)
             counts = [len(row) for row in rows]
-            stream.rows(
+            sink.rows(
                 RINGS,
                 when,
                 column(rr.Points2D.descriptor_positions(), pairs(marks[:, :2]), counts),
@@ -192,11 +192,11 @@ class Talk(Page):
         self._packets, self._rings = [], []
 
     def _send_arrows(
-        self, stream: Stream, path: str, when: Sequence[Moment], ends: NDArray[np.float64],
+        self, sink: Sink, path: str, when: Sequence[Moment], ends: NDArray[np.float64],
         counts: list[int], *more: rr.ComponentColumn,
     ) -> None:  # fmt: skip
-        origins, vectors = rim_to_rim(ends, self._story.mark)
-        stream.rows(
+        origins, vectors = rim_to_rim(ends, self._state.mark)
+        sink.rows(
             path,
             when,
             column(rr.Arrows2D.descriptor_origins(), pairs(origins), counts),
@@ -204,21 +204,21 @@ class Talk(Page):
             *more,
         )
 
-    def _involve(self, at: Moment, line: Told) -> None:
+    def _involve(self, at: Moment, line: RecordedLine) -> None:
         """A ring for who took part: the latest part of the sender, or being called."""
         parts = self._parts
         was, size = parts.get(line.sender), len(parts)
         if line.kind == "call":
             self._part(line.sender, AUCTIONEER_COLOUR)
             for robot in line.heard:
-                parts.setdefault(robot, (*self._story.at(robot), CALLED_COLOUR))
+                parts.setdefault(robot, (*self._state.at(robot), CALLED_COLOUR))
         elif line.kind != "assign":
             self._part(line.sender, kind_colour(line.kind))
         if was != parts.get(line.sender) or size != len(parts):
             self._draw_rings(at)
 
     def _part(self, robot: RobotId, colour: int) -> None:
-        self._parts[robot] = (*self._story.at(robot), colour)
+        self._parts[robot] = (*self._state.at(robot), colour)
 
     def _draw_rings(self, at: Moment) -> None:
         self._rings.append((at, list(self._parts.values())))

@@ -13,9 +13,9 @@ import urllib.request
 import pytest
 
 from fleet.replay import scheme
-from fleet.replay.compare import arrange
+from fleet.replay.comparison import arrange
 from fleet.replay.readback import Recording
-from fleet.replay.view import serve, view
+from fleet.replay.viewer import serve, view
 
 
 def test_recordings_side_by_side(rounds, stream, tmp_path):
@@ -88,7 +88,7 @@ def own_addresses():
 def test_ctrl_c_ends_the_web_viewer(rounds):
     code = f"""
         from pathlib import Path
-        from fleet.replay.view import view
+        from fleet.replay.viewer import view
         view([Path({str(rounds.path)!r})], web=True, tell=lambda url: print(url, flush=True))
         print("over")
     """

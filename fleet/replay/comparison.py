@@ -32,19 +32,19 @@ def arrange(recordings: Sequence[Path], out: Path, timeline: str | None = None) 
         layout = side_by_side(stages, timeline or ROUND)
     application = APPLICATION if len(loaded) == 1 else COMPARISON
     key = "+".join(recording.key for recording in loaded)
-    stream = rr.RecordingStream(application, recording_id=key, send_properties=False)
-    stream.save(out, default_blueprint=layout)
-    stream.send_recording_name(" | ".join(stage.name for stage in stages))
+    sink = rr.RecordingStream(application, recording_id=key, send_properties=False)
+    sink.save(out, default_blueprint=layout)
+    sink.send_recording_name(" | ".join(stage.name for stage in stages))
     for recording, stage in zip(loaded, stages, strict=True):
-        stream.send_chunks(
+        sink.send_chunks(
             [
                 chunk.with_entity_path(stage(chunk.entity_path.removeprefix("/")))
                 for chunk in recording.chunks
                 if not chunk.entity_path.startswith("/__properties")
             ]
         )
-    stream.flush()
-    stream.disconnect()
+    sink.flush()
+    sink.disconnect()
 
 
 def _stage(recording: Recording, root: str) -> Stage:

@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, column, doubles
-from fleet.replay.journal import Told, TripEnd
+from fleet.replay.journal import RecordedLine, TripEnd
 from fleet.replay.scheme import (
     COMPONENTS,
     EVENT_COLOUR,
@@ -25,14 +25,14 @@ from fleet.replay.scheme import (
     UDG_COLOUR,
     WINNER_COLOUR,
 )
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import KINDS, Award
 
 FORESEEN_COLOUR = 0x9AA5B5FF
 
 
-class Counts(Page):
+class Curves(Layer):
     """Energy, messages and trips, at the end of each round."""
 
     def __init__(self) -> None:
@@ -44,12 +44,12 @@ class Counts(Page):
         self._totals: list[tuple[Moment, tuple[float, float]]] = []
         self._on_air: list[tuple[Moment, tuple[float]]] = []
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Full batteries, no messages."""
-        self._story = story
+        self._state = state
         self._count(Moment(0.0, 0, 0))
 
-    def told(self, at: Moment, line: Told) -> None:
+    def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """One more."""
         self._kinds[line.kind] += 1
 
@@ -58,17 +58,17 @@ class Counts(Page):
         self._messages.append((at, tuple(float(self._kinds[kind]) for kind in KINDS)))
         self._kinds.clear()
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """Energy is counted when the driving is over."""
         along = np.hypot(trip.site[0] - trip.origin[0], trip.site[1] - trip.origin[1])
-        foreseen = self._story.scene.per_metre * float(along)
+        foreseen = self._state.scene.per_metre * float(along)
         self._foreseen += foreseen
         self._drained += trip.energy
         self._trips.append((at, (foreseen, trip.energy)))
         self._totals.append((at, (self._foreseen, self._drained)))
         self._count(at)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """The curves."""
         for path, rows in (
             (FLEET_ENERGY, self._energy),
@@ -80,7 +80,7 @@ class Counts(Page):
             if rows:
                 when, values = zip(*rows, strict=True)
                 numbers = np.array(values, float)
-                stream.rows(
+                sink.rows(
                     path,
                     when,
                     column(
@@ -92,14 +92,14 @@ class Counts(Page):
                 rows.clear()
 
     def _count(self, at: Moment) -> None:
-        energies = self._story.energies
+        energies = self._state.energies
         mean, spread = float(energies.mean()), float(energies.std())
         figures = (mean, float(energies.min()), max(mean - spread, 0.0), mean + spread)
         self._energy.append((at, figures))
-        self._on_air.append((at, (float(self._story.on_air.sum()),)))
+        self._on_air.append((at, (float(self._state.on_air.sum()),)))
 
 
-def describe_counts(stream: Stream) -> None:
+def describe_counts(sink: Sink) -> None:
     """Names, units and colours of the curves."""
     curves: dict[str, tuple[list[str], list[int], list[float]]] = {
         FLEET_ENERGY: (
@@ -126,7 +126,7 @@ def describe_counts(stream: Stream) -> None:
     }  # fmt: skip
     steps = rr.components.InterpolationMode.StepAfter
     for path, (names, paint, widths) in curves.items():
-        stream.static(
+        sink.static(
             path,
             rr.SeriesLines.from_fields(
                 names=names,

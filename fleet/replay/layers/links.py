@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from fleet.replay.columns import Index, Moment, column, doubles, segments
 from fleet.replay.journal import TripEnd
-from fleet.replay.pages.frames import Poses, frames
-from fleet.replay.pages.network import (
+from fleet.replay.layers.frames import Poses, frames
+from fleet.replay.layers.network import (
     Codes,
-    Reach,
+    MoverReach,
     Spell,
     any_spell,
     component_counts,
@@ -26,8 +26,8 @@ from fleet.replay.pages.network import (
     without,
 )
 from fleet.replay.scheme import COMPONENTS, LINK_COUNT, ROUTING, UDG
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import RobotId
 from protocols.topology import GraphName
 
@@ -37,7 +37,7 @@ FloatArray = NDArray[np.float64]
 NOBODY = np.empty((1, 0, 2))
 
 
-class Course(NamedTuple):
+class MoverPath(NamedTuple):
     """Where everybody was from one departure or arrival to the next."""
 
     base: FloatArray  # (n, 2) of those at rest [m]; NaN: off the air
@@ -46,27 +46,27 @@ class Course(NamedTuple):
     places: FloatArray  # (k, j, 2) of those under way [m]
 
 
-class Links(Page):
+class Links(Layer):
     """Both graphs, spell by spell: a spell lasts until somebody sets off or arrives."""
 
     def __init__(self) -> None:
-        self._courses: list[Course] = []
+        self._courses: list[MoverPath] = []
         self._disc_spells: list[Spell] = []
         self._routing_spells: list[Spell] = []
         self._samples: list[FloatArray] = []  # of this spell
         self._poses: Poses = {}
         self._counts: list[tuple[Moment, Codes, int, NDArray[np.bool_]]] = []
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Everybody at rest."""
-        self._story = story
-        self._range = story.scene.radio_range
-        self._graph = cast(GraphName, story.scene.graph)
+        self._state = state
+        self._range = state.scene.radio_range
+        self._graph = cast(GraphName, state.scene.graph)
         self._anew(Moment(0.0, 0, 0))
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """A moment to see who has fallen silent, or is heard again."""
-        if (self._on_air != self._story.on_air).any():
+        if (self._on_air != self._state.on_air).any():
             if self._poses:
                 self._spell_over(at)
             self._anew(at)
@@ -83,41 +83,41 @@ class Links(Page):
         self._latest = at
         self._samples.append(samples[samples[:, 1] > self._start.time])
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The spell is over, and what holds now is counted."""
         self._spell_over(at)
         del self._poses[trip.robot]
-        if (self._on_air != self._story.on_air).any():
+        if (self._on_air != self._state.on_air).any():
             self._anew(at)
         else:
             self._begin(at)
             self._count(at)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Links, their number, and the components they form."""
         if self._samples:
             self._spell_over(self._latest)
             self._begin(self._latest)
         if self._courses:
-            _send_links(stream, UDG, self._courses, self._disc_spells)
-            _send_links(stream, ROUTING, self._courses, self._routing_spells)
+            _send_links(sink, UDG, self._courses, self._disc_spells)
+            _send_links(sink, ROUTING, self._courses, self._routing_spells)
         if self._counts:
             when, routing, udg, on_air = zip(*self._counts, strict=True)
             numbers = np.array([udg, [len(codes) for codes in routing]], float).T
-            pieces = component_counts(routing, on_air, self._story.n)
-            stream.rows(
+            pieces = component_counts(routing, on_air, self._state.n)
+            sink.rows(
                 LINK_COUNT,
                 when,
                 column(rr.Scalars.descriptor_scalars(), doubles(numbers.ravel()), [2] * len(when)),
             )
-            stream.rows(COMPONENTS, when, column(rr.Scalars.descriptor_scalars(), doubles(pieces)))
+            sink.rows(COMPONENTS, when, column(rr.Scalars.descriptor_scalars(), doubles(pieces)))
         self._courses, self._disc_spells, self._routing_spells, self._counts = [], [], [], []
 
     def _anew(self, at: Moment) -> None:
         """Work out all links: at the start, and when somebody has fallen silent."""
-        self._on_air = self._story.on_air.copy()
+        self._on_air = self._state.on_air.copy()
         self._begin(at)
-        self._courses.append(Course(self._base, [], Index.of([at]), NOBODY))
+        self._courses.append(MoverPath(self._base, [], Index.of([at]), NOBODY))
         self._udg = whole(self._base, self._range, "udg")
         self._routing = whole(self._base, self._range, self._graph)
         self._disc_spells.append(Spell(self._udg, [self._udg[:0]]))
@@ -127,7 +127,7 @@ class Links(Page):
     def _begin(self, at: Moment) -> None:
         self._start = at
         self._samples = []
-        self._base = np.where(self._on_air[:, None], self._story.positions, np.nan)
+        self._base = np.where(self._on_air[:, None], self._state.positions, np.nan)
 
     def _spell_over(self, at: Moment) -> None:
         """Work out the links since the spell began, until now."""
@@ -135,7 +135,7 @@ class Links(Page):
         base, robots, _, places = course
         if len(robots) == 1 and self._graph in ("gabriel", "udg"):
             (robot,) = robots
-            reach = Reach.of(base, robot, places[:, 0], self._range)
+            reach = MoverReach.of(base, robot, places[:, 0], self._range)
             disc = routing = disc_spell(self._udg, robot, reach)
             if self._graph == "gabriel":
                 routing = gabriel_spell(self._routing, disc.fixed, base, robot, reach)
@@ -148,7 +148,7 @@ class Links(Page):
         self._udg = np.sort(np.concatenate([disc.fixed, disc.varying[-1]]))
         self._routing = np.sort(np.concatenate([routing.fixed, routing.varying[-1]]))
 
-    def _course(self, at: Moment) -> Course:
+    def _course(self, at: Moment) -> MoverPath:
         """The spell's moments, from its start to now, :data:`INTERVAL` apart."""
         robots = sorted(self._poses)
         last = [self._pose(at, robot) for robot in robots]
@@ -165,17 +165,17 @@ class Links(Page):
         rounds, msgs = np.full(len(rows), at.round), np.full(len(rows), at.msg)
         rounds[0], msgs[0] = self._start.round, self._start.msg
         places = np.where(self._on_air[robots, None], rows[:, :, 2:4], np.nan)
-        return Course(self._base, robots, Index(times, rounds, msgs), places)
+        return MoverPath(self._base, robots, Index(times, rounds, msgs), places)
 
     def _pose(self, at: Moment, robot: RobotId) -> tuple[float, ...]:
-        return (robot, at.time, *self._story.at(robot), 0.0, 0.0)
+        return (robot, at.time, *self._state.at(robot), 0.0, 0.0)
 
     def _count(self, at: Moment) -> None:
         self._counts.append((at, self._routing, len(self._udg), self._on_air))
 
 
 def _send_links(
-    stream: Stream, path: str, courses: Sequence[Course], spells: Sequence[Spell]
+    sink: Sink, path: str, courses: Sequence[MoverPath], spells: Sequence[Spell]
 ) -> None:
     """Links in three parts, each rewritten as seldom as it can be.
 
@@ -195,7 +195,7 @@ def _send_links(
     for part, of, codes in (("lasting", firsts, lasting), ("resting", every, resting)):
         counts = [len(some) for some in codes]
         ends = bases[np.repeat(of, counts)[:, None], _ends(codes, n)]
-        _send_strips(stream, f"{path}/{part}", when.take(starts[of]), ends, counts)
+        _send_strips(sink, f"{path}/{part}", when.take(starts[of]), ends, counts)
 
     varying = [codes for spell in spells for codes in spell.varying]
     counts = [len(codes) for codes in varying]
@@ -210,7 +210,7 @@ def _send_links(
         )
         link, end = np.nonzero(pairs == mover[spell][:, None])
         ends[link, end] = places[moment[link]]
-    _send_strips(stream, f"{path}/moving", when, ends, counts)
+    _send_strips(sink, f"{path}/moving", when, ends, counts)
 
 
 def _ends(codes: Sequence[Codes], n: int) -> NDArray[np.intp]:
@@ -219,6 +219,6 @@ def _ends(codes: Sequence[Codes], n: int) -> NDArray[np.intp]:
 
 
 def _send_strips(
-    stream: Stream, path: str, when: Index, ends: NDArray[np.float32], counts: Sequence[int]
+    sink: Sink, path: str, when: Index, ends: NDArray[np.float32], counts: Sequence[int]
 ) -> None:
-    stream.rows(path, when, column(rr.LineStrips2D.descriptor_strips(), segments(ends), counts))
+    sink.rows(path, when, column(rr.LineStrips2D.descriptor_strips(), segments(ends), counts))

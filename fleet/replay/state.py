@@ -1,4 +1,4 @@
-"""What the writer knows of the run so far, and the pages that tell it."""
+"""What the writer knows of the run so far, and the layers that tell it."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.replay.columns import Moment
-from fleet.replay.journal import Scene, Told, TripEnd
-from fleet.replay.stream import Stream
+from fleet.replay.journal import RecordedLine, Scene, TripEnd
+from fleet.replay.sink import Sink
 from protocols.messages import Award, Point, RobotId
 
 
@@ -27,13 +27,13 @@ class UnderWay(NamedTuple):
 
 
 @dataclass(slots=True)
-class Conversation:
+class OpenConversation:
     """What has been said about an event since it was last raised."""
 
     event: int
     site: Point  # [m]
     source: RobotId
-    lines: list[Told] = field(default_factory=list)
+    lines: list[RecordedLine] = field(default_factory=list)
 
     def count(self, kind: str) -> int:
         """Transmissions of a kind so far."""
@@ -58,7 +58,7 @@ class Conversation:
         return parents
 
 
-class Story:
+class FleetState:
     """The state of the fleet, kept up to the happening that is being told."""
 
     def __init__(self, scene: Scene) -> None:
@@ -70,7 +70,9 @@ class Story:
         self.on_air = self.energies > 0.0  # (n,)
         self.under_way: dict[RobotId, UnderWay] = {}
         self.sites: dict[int, Point] = {}  # of the events that are not over [m]
-        self.talks: dict[int, Conversation] = {}  # by event, the latest about each open one
+        self.conversations: dict[
+            int, OpenConversation
+        ] = {}  # by event, the latest about each open one
         self.round = 0
         self.now = 0.0  # [s]
         self.mark = mark_of(scene)
@@ -90,32 +92,32 @@ def mark_of(scene: Scene) -> float:
     return max(scene.radius, 0.0055 * max(scene.width, scene.height))
 
 
-class Page:
+class Layer:
     """One part of the picture: it is told what happens and turns it into rows.
 
-    The story is up to date when a page is told, and knows the trip that ended no more.
+    The state is up to date when a layer is told, and knows the trip that ended no more.
     """
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Everybody is in place."""
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """An event is told to a robot; again, by another, if nobody went or arrived."""
 
-    def told(self, at: Moment, line: Told) -> None:
+    def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """A transmission was made."""
 
     def awarded(self, at: Moment, event: int, award: Award) -> None:
         """A conversation is over."""
 
-    def broken(self, at: Moment, event: int, reason: str) -> None:
+    def broken_off(self, at: Moment, event: int, reason: str) -> None:
         """A conversation came to no end."""
 
-    def over(self, at: Moment, event: int, outcome: str) -> None:
-        """An event is "served", "expired" or "lost"; the story knows it no more."""
+    def event_closed(self, at: Moment, event: int, outcome: str) -> None:
+        """An event is "served", "expired" or "lost"; the state knows it no more."""
 
     def departed(self, at: Moment, robot: RobotId) -> None:
-        """A robot sets off; the story knows where to, and whether that is an event."""
+        """A robot sets off; the state knows where to, and whether that is an event."""
 
     def planned(self, at: Moment, robot: RobotId, way: NDArray[np.float64]) -> None:
         """A robot that has set off is going to drive along ``way`` (k, 2) [m]."""
@@ -123,11 +125,11 @@ class Page:
     def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
         """Poses (k, 6) of those under way, up to now; the moment's time is that of the last."""
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """A robot came to rest: at an event, short of it, or elsewhere, see :data:`RELOCATED`."""
 
-    def finished(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
+    def run_ended(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
         """Nothing more happens; without a summary, the run broke off."""
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Pass on the rows made since the last time."""

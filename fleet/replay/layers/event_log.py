@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, texts
-from fleet.replay.journal import RELOCATED, Told, TripEnd
+from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
 from fleet.replay.scheme import (
     EVENT_COLOUR,
     KIND_COLOURS,
@@ -22,15 +22,15 @@ from fleet.replay.scheme import (
     WINNER_TEXT,
     kind_colour,
 )
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import Award, RobotId
 
 SAID, DECIDED, FAILED = "TRACE", "INFO", "WARN"  # log levels
 PLAIN = 0x93A0B4FF
 
 
-class Words(Page):
+class EventLog(Layer):
     """The log, whose level tells transmissions from decisions, and the bar of phases."""
 
     def __init__(self) -> None:
@@ -38,19 +38,19 @@ class Words(Page):
         self._phases: list[tuple[Moment, str]] = []
         self._phase = ""
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Nothing has been said."""
-        self._story = story
+        self._state = state
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """An event, and who is told."""
-        x, y = self._story.sites[event]
+        x, y = self._state.sites[event]
         self._phase = ""
         self._decide(
             at, f"event {event + 1} at ({x:.2f}, {y:.2f}) m, r{source} is told", EVENT_COLOUR
         )
 
-    def told(self, at: Moment, line: Told) -> None:
+    def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """A transmission, and what it says about a decision."""
         if line.kind == "route-face" and self._phase != "route-face":
             self._decide(
@@ -78,11 +78,11 @@ class Words(Page):
         cost = next((f"{cost:.2f}, " for cost, robot in bids if robot == winner), "")
         self._decide(at, f"r{winner} wins: {cost}{among}", WINNER_TEXT)
 
-    def broken(self, at: Moment, event: int, reason: str) -> None:
+    def broken_off(self, at: Moment, event: int, reason: str) -> None:
         """Nothing came of it."""
         self._decide(at, f"event {event + 1}: nothing came of it, {reason}", EVENT_COLOUR, FAILED)
 
-    def over(self, at: Moment, event: int, outcome: str) -> None:
+    def event_closed(self, at: Moment, event: int, outcome: str) -> None:
         """What was not served."""
         if outcome != "served":
             self._decide(at, f"event {event + 1}: {outcome}", EVENT_COLOUR, FAILED)
@@ -91,7 +91,7 @@ class Words(Page):
         """Off it goes."""
         self._enter(at, MOTION)
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """How it went."""
         took = f"{trip.ended - trip.departed:.2f} s, {trip.path:.2f} m, {trip.energy:.2f} J"
         relocated = trip.outcome == RELOCATED
@@ -104,14 +104,14 @@ class Words(Page):
             PLAIN if arrived else EVENT_COLOUR,
             DECIDED if arrived else FAILED,
         )  # fmt: skip
-        if self._story.energies[trip.robot] <= 0.0:
+        if self._state.energies[trip.robot] <= 0.0:
             self._decide(at, f"r{trip.robot} is out of energy, off the air", EVENT_COLOUR, FAILED)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Log and phases."""
         if self._lines:
             when, bodies, levels, paint = zip(*self._lines, strict=True)
-            stream.rows(
+            sink.rows(
                 LOG,
                 when,
                 column(rr.TextLog.descriptor_text(), texts(bodies)),
@@ -120,13 +120,13 @@ class Words(Page):
             )
         if self._phases:
             when, states = zip(*self._phases, strict=True)
-            stream.rows(PHASE, when, column(rr.StateChange.descriptor_state(), texts(states)))
+            sink.rows(PHASE, when, column(rr.StateChange.descriptor_state(), texts(states)))
         self._lines, self._phases = [], []
 
-    def _off(self, line: Told) -> str:
+    def _off(self, line: RecordedLine) -> str:
         """How far from the event the sender is."""
-        site = self._story.sites.get(line.event)
-        return "" if site is None else f", {dist(self._story.at(line.sender), site):.2f} m off"
+        site = self._state.sites.get(line.event)
+        return "" if site is None else f", {dist(self._state.at(line.sender), site):.2f} m off"
 
     def _enter(self, at: Moment, phase: str) -> None:
         if phase != self._phase:
@@ -137,7 +137,7 @@ class Words(Page):
         self._lines.append((at, text, level, colour))
 
 
-def say(line: Told) -> str:
+def say(line: RecordedLine) -> str:
     """A transmission as a line of the log."""
     heard = " ".join(f"r{robot}" for robot in line.heard[:8])
     if len(line.heard) > 8:
@@ -155,9 +155,9 @@ def say(line: Told) -> str:
     return f"{line.number:>6}  {label:<10} r{line.sender} → {heard}{offer}"
 
 
-def describe_phases(stream: Stream) -> None:
+def describe_phases(sink: Sink) -> None:
     """Names and colours of the phases: those of the arrows."""
-    stream.static(
+    sink.static(
         PHASE,
         rr.StateConfiguration(
             values=[*KIND_COLOURS, MOTION],

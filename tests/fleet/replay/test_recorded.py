@@ -12,7 +12,7 @@ import pytest
 
 from fleet.replay import scheme
 from fleet.replay.readback import Recording
-from fleet.replay.recording import RerunRecorder
+from fleet.replay.rerun_recorder import RerunRecorder
 from fleet.replay.scheme import LINK_PARTS, MSG, ROUND, SIM_TIME, TIMELINES
 from protocols.messages import KINDS
 from protocols.topology import edges

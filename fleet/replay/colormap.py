@@ -34,6 +34,6 @@ def levels(energy: ArrayLike, capacity: float) -> NDArray[np.uint8]:
     return np.asarray(np.rint(255.0 * share), np.uint8)
 
 
-def shade(energy: ArrayLike, capacity: float) -> NDArray[np.uint32]:
+def energy_colours(energy: ArrayLike, capacity: float) -> NDArray[np.uint32]:
     """Energies [J] as colours 0xRRGGBBAA."""
     return np.asarray(PACKED[levels(energy, capacity)])

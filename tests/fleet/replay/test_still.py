@@ -8,8 +8,8 @@ import rerun as rr
 from PIL import Image
 
 from fleet.replay import scheme
-from fleet.replay.picture import picture
 from fleet.replay.readback import Recording
+from fleet.replay.still import picture
 
 
 def pixels(path):

@@ -7,8 +7,8 @@ import pyarrow as pa
 import rerun as rr
 
 from fleet.replay.columns import Moment, colours, column, pairs, texts
-from fleet.replay.journal import RELOCATED, Told, TripEnd
-from fleet.replay.pages.labels import Labels
+from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
+from fleet.replay.layers.label_placement import LabelPlacement
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
     EVENT,
@@ -18,8 +18,8 @@ from fleet.replay.scheme import (
     SOURCE_COLOUR,
     WINNER_TEXT,
 )
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 from protocols.messages import Award, Point, RobotId
 
 TARGET = 2.3  # radius of the ring around an event, in radii of a robot
@@ -31,7 +31,7 @@ COLOURS = {
 }
 
 
-class Roles(Page):
+class Roles(Layer):
     """Names of those who take part in the latest conversation, and of all events that are open."""
 
     def __init__(self) -> None:
@@ -41,17 +41,17 @@ class Roles(Page):
         self._names: dict[str, tuple[str, int, Point]] = {}  # text, colour, anchor, by whose it is
         self._event = -1
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """Nothing to name."""
-        self._story = story
-        self._labels = Labels((story.scene.width, story.scene.height))
+        self._state = state
+        self._labels = LabelPlacement((state.scene.width, state.scene.height))
 
-    def raised(self, at: Moment, event: int, source: RobotId) -> None:
+    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """The event and who is told of it."""
         self._event = event
         self._held, self._names = {}, {}
-        self._labels.clear(self._story.positions)
-        sites = self._story.sites
+        self._labels.clear(self._state.positions)
+        sites = self._state.sites
         for site in sites.values():
             self._labels.keep_off(site)
         self._name(f"event {event + 1}", sites[event], EVENT_COLOUR)
@@ -61,7 +61,7 @@ class Roles(Page):
         self._draw_events(at)
         self._draw_names(at)
 
-    def told(self, at: Moment, line: Told) -> None:
+    def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """The first to call is the auctioneer."""
         if line.kind == "call" and line.event == self._event:
             self._assume(line.sender, "auctioneer", once=True)
@@ -77,44 +77,44 @@ class Roles(Page):
 
     def departed(self, at: Moment, robot: RobotId) -> None:
         """A mover carries its own name; other names keep off its way."""
-        _, (x, y), (to_x, to_y), *_ = self._story.under_way[robot]
+        _, (x, y), (to_x, to_y), *_ = self._state.under_way[robot]
         for share in (0.2, 0.4, 0.6, 0.8):
             self._labels.keep_off((x + share * (to_x - x), y + share * (to_y - y)))
         if self._held.pop(robot, None):
             del self._names[f"r{robot}"]
             self._draw_names(at)
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The one who went, where it stands now."""
         if event == self._event and trip.outcome != RELOCATED:
             self._assume(trip.robot, "winner")
             self._draw_names(at)
 
-    def over(self, at: Moment, event: int, outcome: str) -> None:
+    def event_closed(self, at: Moment, event: int, outcome: str) -> None:
         """Off the map; but the last one stays until the next is raised."""
-        if self._story.sites:
+        if self._state.sites:
             self._draw_events(at)
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Events with their circles, and names."""
         if self._event_rows:
             when, sites = zip(*self._event_rows, strict=True)
             counts = [len(row) for row in sites]
             centres = pairs(np.array([site for row in sites for site in row]).reshape(-1, 2))
-            stream.rows(
+            sink.rows(
                 EVENT,
                 when,
                 column(rr.Points2D.descriptor_positions(), centres, counts),
-                *_circles(centres, counts, TARGET * self._story.mark),
+                *_circles(centres, counts, TARGET * self._state.mark),
             )
-            radius = self._story.scene.search_radius
+            radius = self._state.scene.search_radius
             if radius > 0.0:
-                stream.rows(SEARCH, when, *_circles(centres, counts, radius))
+                sink.rows(SEARCH, when, *_circles(centres, counts, radius))
         if self._name_rows:
             when, rows = zip(*self._name_rows, strict=True)
             counts = [len(row) for row in rows]
             words, paint, places = zip(*(name for row in rows for name in row), strict=True)
-            stream.rows(
+            sink.rows(
                 NAMES,
                 when,
                 column(rr.Points2D.descriptor_positions(), pairs(places), counts),
@@ -131,14 +131,14 @@ class Roles(Page):
         if role not in held:
             held.append(role)
             text = f"{', '.join(held)} r{robot}"
-            self._name(f"r{robot}", self._story.at(robot), COLOURS[role], text)
+            self._name(f"r{robot}", self._state.at(robot), COLOURS[role], text)
 
     def _name(self, whose: str, place: Point, colour: int, text: str = "") -> None:
         text = text or whose
         self._names[whose] = text, colour, self._labels.place(*place, len(text))
 
     def _draw_events(self, at: Moment) -> None:
-        self._event_rows.append((at, list(self._story.sites.values())))
+        self._event_rows.append((at, list(self._state.sites.values())))
 
     def _draw_names(self, at: Moment) -> None:
         self._name_rows.append((at, list(self._names.values())))

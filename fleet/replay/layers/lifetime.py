@@ -11,6 +11,7 @@ import rerun as rr
 from numpy.typing import NDArray
 from PIL import Image
 
+from fleet.replay.colormap import TABLE, energy_colours, levels
 from fleet.replay.columns import Moment, column, segments
 from fleet.replay.journal import TripEnd
 from fleet.replay.scheme import (
@@ -25,9 +26,8 @@ from fleet.replay.scheme import (
     STARTS,
     TEXT_COLOUR,
 )
-from fleet.replay.shades import TABLE, levels, shade
-from fleet.replay.story import Page, Story
-from fleet.replay.stream import Stream
+from fleet.replay.sink import Sink
+from fleet.replay.state import FleetState, Layer
 
 MAP_WIDTH, MAP_HEIGHT = 200.0, 80.0  # of the plane that the energy map is drawn on
 BARS = 20  # of the histogram
@@ -35,7 +35,7 @@ CORNERS = 8  # of a driven path, at most
 TRIPS = 20_000  # that are drawn, at most
 
 
-class Lifetime(Page):
+class Lifetime(Layer):
     """Drawn whenever the run has become twice as long, and at its end."""
 
     def __init__(self) -> None:
@@ -45,14 +45,14 @@ class Lifetime(Page):
         self._cursors: list[tuple[Moment, int]] = []
         self._due = 16
 
-    def started(self, story: Story) -> None:
+    def run_started(self, state: FleetState) -> None:
         """The first row of the map."""
-        self._story = story
-        self._starts = story.positions.astype(np.float32)
-        self._levels.append(levels(story.energies, story.capacity))
+        self._state = state
+        self._starts = state.positions.astype(np.float32)
+        self._levels.append(levels(state.energies, state.capacity))
         self._cursors.append((Moment(0.0, 0, 0), 0))
 
-    def raised(self, at: Moment, event: int, source: int) -> None:
+    def event_raised(self, at: Moment, event: int, source: int) -> None:
         """The rounds before are history."""
         self._cursors.append((at, at.round))
 
@@ -60,9 +60,9 @@ class Lifetime(Page):
         """On the way somewhere."""
         self._driving.append(samples)
 
-    def ended(self, at: Moment, event: int, trip: TripEnd) -> None:
+    def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """A path, and what everybody has left."""
-        now = levels(self._story.energies, self._story.capacity)
+        now = levels(self._state.energies, self._state.capacity)
         while len(self._levels) <= at.round:
             self._levels.append(now)
         self._levels[at.round] = now
@@ -71,38 +71,38 @@ class Lifetime(Page):
             mine = poses[poses[:, 0] == trip.robot, 2:4]
             picked = mine[:: max(1, len(mine) // CORNERS)]
             self._paths.append(np.array([trip.origin, *picked, trip.end], np.float32))
-        since = min((way.departed for way in self._story.under_way.values()), default=np.inf)
+        since = min((way.departed for way in self._state.under_way.values()), default=np.inf)
         self._driving = [samples for samples in self._driving if samples[-1, 1] > since]
 
-    def finished(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
+    def run_ended(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
         """Draw it all."""
         self._due = 0
 
-    def send(self, stream: Stream) -> None:
+    def send(self, sink: Sink) -> None:
         """Everything anew, seldom."""
         if self._cursors:
-            self._send_cursor(stream)
+            self._send_cursor(sink)
         if len(self._levels) < self._due:
             return
         self._due = 2 * len(self._levels)
-        story = self._story
-        self._send_map(stream)
+        state = self._state
+        self._send_map(sink)
         if self._paths:
-            stream.static(
-                PATHS, rr.LineStrips2D(self._paths, radii=0.15 * story.mark, colors=0x56B4E970)
+            sink.static(
+                PATHS, rr.LineStrips2D(self._paths, radii=0.15 * state.mark, colors=0x56B4E970)
             )
-        stream.static(STARTS, rr.Points2D(self._starts, radii=0.3 * story.mark, colors=0x93A0B4FF))
-        stream.static(
+        sink.static(STARTS, rr.Points2D(self._starts, radii=0.3 * state.mark, colors=0x93A0B4FF))
+        sink.static(
             ENDS,
             rr.Points2D(
-                story.positions.astype(np.float32),
-                radii=story.mark,
-                colors=shade(story.energies, story.capacity),
+                state.positions.astype(np.float32),
+                radii=state.mark,
+                colors=energy_colours(state.energies, state.capacity),
                 draw_order=20.0,
             ),
         )
-        counts, edges = np.histogram(story.energies, BARS, (0.0, story.capacity))
-        stream.static(
+        counts, edges = np.histogram(state.energies, BARS, (0.0, state.capacity))
+        sink.static(
             HISTOGRAM,
             rr.BarChart(
                 counts,
@@ -112,7 +112,7 @@ class Lifetime(Page):
             ),
         )
 
-    def _send_map(self, stream: Stream) -> None:
+    def _send_map(self, sink: Sink) -> None:
         """A pixel for every robot and round; what lies under the map is measured in pixels."""
         grid = np.array(self._levels).T  # (n, rounds + 1)
         n, rounds = grid.shape
@@ -120,7 +120,7 @@ class Lifetime(Page):
         image.putpalette(TABLE.tobytes())
         png = io.BytesIO()
         image.save(png, "PNG")
-        stream.static(
+        sink.static(
             ENERGY_MAP,
             rr.Transform3D(mat3x3=np.diag([MAP_WIDTH / rounds, MAP_HEIGHT / n, 1.0])),
             rr.EncodedImage(contents=png.getvalue(), media_type="image/png", draw_order=-100.0),
@@ -130,27 +130,27 @@ class Lifetime(Page):
         words[0] = "round 0"
         spots = [(tick + 0.5, 1.03 * n) for tick in along]
         spots += [(-0.02 * rounds, tick + 0.5) for tick in down]
-        stream.static(
+        sink.static(
             ENERGY_MAP_SCALES,
             rr.Points2D(spots, labels=words, colors=TEXT_COLOUR, radii=-0.1, show_labels=True),
         )
 
-    def _send_cursor(self, stream: Stream) -> None:
+    def _send_cursor(self, sink: Sink) -> None:
         when, rounds = zip(*self._cursors, strict=True)
         x = np.array(rounds) + 0.5
         lines = np.zeros((len(x), 2, 2))
         lines[:, :, 0] = x[:, None]
-        lines[:, 1, 1] = self._story.n
-        stream.rows(
+        lines[:, 1, 1] = self._state.n
+        sink.rows(
             ENERGY_MAP_CURSOR, when, column(rr.LineStrips2D.descriptor_strips(), segments(lines))
         )
         self._cursors = []
 
 
-def describe_lifetime(stream: Stream) -> None:
+def describe_lifetime(sink: Sink) -> None:
     """Its plane, and the line at the cursor."""
-    stream.static(GROUND_PLANE, rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0])))
-    stream.static(ENERGY_MAP_CURSOR, rr.LineStrips2D.from_fields(radii=-0.75, colors=PACKET_COLOUR))
+    sink.static(GROUND_PLANE, rr.Transform3D(mat3x3=np.diag([1.0, -1.0, 1.0])))
+    sink.static(ENERGY_MAP_CURSOR, rr.LineStrips2D.from_fields(radii=-0.75, colors=PACKET_COLOUR))
 
 
 def ticks(size: int) -> list[int]:
