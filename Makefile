@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-slow test-all lint bench browser clean
+.PHONY: demo test test-slow test-all lint bench docs browser clean
 
 demo: $(VENV)/.ready ## one run with the defaults, recorded
 	$(BIN)/fleet run --rrd out/demo.rrd
@@ -25,6 +25,9 @@ lint: $(VENV)/.ready-dev ## style, types, import contracts
 
 bench: $(VENV)/.ready-dev ## the measured figures, as ratios within one run
 	$(BIN)/python benchmarks/run.py
+
+docs: $(VENV)/.ready-dev ## the documentation's pages, in out/docs/index.html
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs out/docs
 
 browser: # the web viewer is tested in Debian's chromium; installed here if that is allowed
 	@command -v chromium >/dev/null || \

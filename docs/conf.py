@@ -1,0 +1,28 @@
+"""How the pages of the documentation are built: `make docs`, offline, warnings are errors."""
+
+from fleet import __version__
+
+project = "talking-fleet"
+copyright = "the authors of talking-fleet, MIT"
+release = __version__
+
+extensions = [
+    "myst_parser",  # the pages are Markdown
+    "sphinx.ext.autodoc",  # the Python API, from its docstrings
+    "sphinx.ext.napoleon",  # docstrings as Google writes them
+    "sphinx.ext.viewcode",
+    "sphinx_click",  # the command line, from its commands
+]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_heading_anchors = 3
+myst_linkify_fuzzy_links = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+suppress_warnings = ["myst.header"]  # the README's pictures and headings are GitHub's
+
+html_theme = "furo"
+html_title = "talking-fleet"
+html_theme_options = {"navigation_with_keys": True}
+exclude_patterns = ["_build"]
