@@ -25,12 +25,12 @@ import pymunk
 from plain_pymunk import DT, SPEC, PlainWorld
 
 import fleet
-from fleet.energy import Battery
 from fleet.motion.chipmunk import connect, step_space
 from fleet.motion.driven import DrivenMotion
 from fleet.motion.options import DriveOptions
 from fleet.motion.planning import Planner
 from fleet.observer import Observer
+from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
 from protocols.compiled import kernel
 from worlds.arena import Arena, scatter

@@ -9,12 +9,12 @@ from math import inf, pi
 
 import numpy as np
 
-from fleet.course import Course
-from fleet.crew import Fleet, Labels
-from fleet.energy import Battery
+from fleet.fleet import Fleet, RunLabels
 from fleet.handler import Handler
+from fleet.modes import Stream
 from fleet.motion.motions import MOTIONS
 from fleet.observer import Audience, Observer
+from fleet.power import Battery
 from fleet.radio import Radio
 from fleet.radio.ideal import IdealRadio
 from fleet.radio.lossy import LossyRadio, RadioSpec
@@ -30,8 +30,8 @@ from fleet.scenario.choices import (
 )
 from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
+from fleet.schedule import Schedule
 from fleet.simulation import Simulation
-from fleet.timing import Stream
 from protocols.messages import Point
 from protocols.topology import Topology, connected, unit_disc
 from worlds.arena import FloatArray, ImpossibleWorld
@@ -94,7 +94,7 @@ def prepare(
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
     ]  # fmt: skip
     motion.place(robots)
-    labels = Labels(
+    labels = RunLabels(
         scenario.protocol.name, scenario.motion.name, scenario.world.name,
         scenario.seed, scenario.search_radius,
     )  # fmt: skip
@@ -105,14 +105,14 @@ def prepare(
         radio,
         motion,
         make_handler(scenario, world, random),
-        make_course(scenario, world, len(robots), random),
+        make_schedule(scenario, world, len(robots), random),
         audience,
     )
 
 
-def make_course(
+def make_schedule(
     scenario: Scenario, world: World, robots: int, random: Mapping[str, np.random.Generator]
-) -> Course:
+) -> Schedule:
     """What will befall the fleet."""
     timing = make_timing(scenario.time)
     for fault in scenario.faults.planned:
@@ -126,7 +126,7 @@ def make_course(
         first = next(occurrences, None)  # what an event process refuses, it refuses here
     except ValueError as error:
         raise bad("events", str(error)) from error
-    return Course(
+    return Schedule(
         timing,
         iter(()) if first is None else chain([first], occurrences),
         tuple(scenario.faults.breakdowns(robots, random["faults"])),

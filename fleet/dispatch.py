@@ -32,7 +32,7 @@ class Dispatcher(Protocol):
 class Dispatch:
     """Collects what is offered and has it assigned every so often; a baseline for streams.
 
-    Used as :class:`fleet.conversing.Conversations` is, by streams alone.
+    Used as :class:`fleet.conversations.Conversations` is, by streams alone.
     """
 
     dispatcher: Dispatcher

@@ -16,7 +16,7 @@ from fleet.motion import Trip
 from protocols.messages import Award, Event, Heard, Move, RobotId, Transmission
 
 if TYPE_CHECKING:
-    from fleet.crew import Fleet
+    from fleet.fleet import Fleet
     from fleet.results import Summary
 
 

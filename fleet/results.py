@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import asdict, dataclass, field
 from math import fsum, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fleet.stream import StreamFigures
+from fleet.fleet import Fleet
+from fleet.service import StreamFigures
 from protocols.messages import KINDS
-
-if TYPE_CHECKING:
-    from fleet.crew import Fleet
 
 
 @dataclass(frozen=True, slots=True)

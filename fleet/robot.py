@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import inf, pi
 from typing import Literal, Protocol
 
-from fleet.energy import Battery, ExtraPower, PowerModel
+from fleet.power import Battery, ExtraPower, PowerModel
 from protocols.messages import Point, RobotId
 
 POSITIVE = (

@@ -8,20 +8,21 @@ from functools import partial
 from math import dist, inf
 
 from fleet.agenda import Agenda
-from fleet.conversing import Conversations
-from fleet.course import Course
-from fleet.crew import Crew, Fleet
+from fleet.conversations import Conversations
 from fleet.dispatch import Dispatch, Dispatcher
 from fleet.faults import Breakdown
+from fleet.fleet import Fleet
 from fleet.handler import Handler, Notice
+from fleet.modes import Rounds, Stream
 from fleet.motion import Motion, Trip
 from fleet.observer import Audience
+from fleet.presence import Presence
 from fleet.radio import Radio
 from fleet.results import Summary, Tally, summarise
 from fleet.robot import Robot
-from fleet.stream import stream_figures
+from fleet.schedule import Schedule
+from fleet.service import stream_figures
 from fleet.tasks import State, Task, TaskBook
-from fleet.timing import Rounds, Stream
 from protocols.geometry import squared_distance
 from protocols.messages import Award, Event, Move, ProtocolFunction, RobotId
 from worlds.events import Occurrence
@@ -37,28 +38,28 @@ class Simulation:
         radio: Radio,
         motion: Motion,
         handler: Handler,
-        course: Course,
+        schedule: Schedule,
         audience: Audience,
     ) -> None:
         self.fleet = fleet
         self.tally = Tally()
         self.book = TaskBook()
         self.now = 0.0  # [s]
-        self._course = course
+        self._schedule = schedule
         self._handler = handler
         self._motion = motion
         self._audience = audience
         self._agenda = Agenda()
-        many_drive = isinstance(course.timing, Stream)
-        self._crew = Crew(fleet, radio, motion, audience, many_drive=many_drive)
+        many_drive = isinstance(schedule.timing, Stream)
+        self._presence = Presence(fleet, radio, motion, audience, many_drive=many_drive)
         self._talks: Conversations | Dispatch
         if many_drive and isinstance(protocol, Dispatcher):
             self._talks = Dispatch(
-                protocol, self._crew.view, radio, self._agenda, self.tally, self._concluded
+                protocol, self._presence.view, radio, self._agenda, self.tally, self._concluded
             )
         else:
             self._talks = Conversations(
-                protocol, self._crew.view, fleet.robots, radio, self._agenda, self.tally,
+                protocol, self._presence.view, fleet.robots, radio, self._agenda, self.tally,
                 audience, fleet.spec.extra.transmission, self._concluded, self._broken_off,
             )  # fmt: skip
         self._trips: dict[int, Task] = {}  # by robot: what it is under way to
@@ -67,7 +68,7 @@ class Simulation:
         self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
         self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
         self._over = False
-        self._told_on_air = list(self._crew.on_air)  # what observers know of it
+        self._told_on_air = list(self._presence.on_air)  # what observers know of it
 
     def run(self) -> Summary:
         """Play to the end: of the network's life, of the rounds, or of the time."""
@@ -77,7 +78,7 @@ class Simulation:
             self._begin()
             while not self._over:
                 self._go_on()
-            self._crew.stand(self.now)
+            self._presence.stand(self.now)
             for robot in list(self._since):
                 self._release(self.fleet.robots[robot])
             summary = self._summary(time.perf_counter() - started)
@@ -88,15 +89,15 @@ class Simulation:
 
     def _begin(self) -> None:
         """Put down what is known to come."""
-        course, agenda = self._course, self._agenda
+        schedule, agenda = self._schedule, self._agenda
         self._handler.meet(self.fleet.robots)
-        for fault in course.breakdowns:
+        for fault in schedule.breakdowns:
             agenda.at(fault.time, partial(self._break_down, fault))
-        for blackout in course.blackouts:
-            agenda.at(blackout.start, partial(self._crew.black_out, blackout, blackout.start))
-            agenda.at(blackout.end, partial(self._crew.lift, blackout, blackout.end))
-        if isinstance(course.timing, Stream):
-            agenda.at(course.timing.duration, self._stop)
+        for blackout in schedule.blackouts:
+            agenda.at(blackout.start, partial(self._presence.black_out, blackout, blackout.start))
+            agenda.at(blackout.end, partial(self._presence.lift, blackout, blackout.end))
+        if isinstance(schedule.timing, Stream):
+            agenda.at(schedule.timing.duration, self._stop)
         self._expect()
 
     def _go_on(self) -> None:
@@ -105,14 +106,14 @@ class Simulation:
         if due <= self.now:
             self._agenda.take()()
             return
-        until = self._crew.slice_end(self.now, due)
+        until = self._presence.slice_end(self.now, due)
         if until == inf and not self._trips and not self._relocating:
             self._over = True  # nothing can happen any more
             return
         trips = self._motion.advance(until)
         self.now = max(self.now, self._motion.now if trips else until)
         if trips or until < due:
-            self._crew.follow(self.now, [trip.robot for trip in trips])
+            self._presence.follow(self.now, [trip.robot for trip in trips])
             for trip in trips:
                 self._settle(self.fleet.robots[trip.robot], trip)
         else:
@@ -125,11 +126,11 @@ class Simulation:
 
     def _expect(self) -> None:
         """Put the next occurrence down: in rounds now, in a stream by its time."""
-        timing = self._course.timing
+        timing = self._schedule.timing
         if self._enough():
             self._over = self._over or isinstance(timing, Rounds)
             return
-        occurrence = next(self._course.occurrences, None)
+        occurrence = next(self._schedule.occurrences, None)
         if occurrence is None:
             self._over = self._over or isinstance(timing, Rounds)
         elif isinstance(timing, Stream):
@@ -139,15 +140,15 @@ class Simulation:
 
     def _enough(self) -> bool:
         """Whether as many rounds as asked for were served, or events raised."""
-        limit = self._course.rounds
-        streaming = isinstance(self._course.timing, Stream)
+        limit = self._schedule.rounds
+        streaming = isinstance(self._schedule.timing, Stream)
         return limit is not None and limit <= (
             len(self.book.tasks) if streaming else self.tally.served
         )
 
     def _occur(self, occurrence: Occurrence) -> None:
         """Something happens; word of it comes to the handler, or does not."""
-        timing, site = self._course.timing, occurrence.position
+        timing, site = self._schedule.timing, occurrence.position
         service = timing.service if occurrence.service is None else occurrence.service
         deadline = timing.deadline if isinstance(timing, Stream) else inf
         if occurrence.deadline is not None:
@@ -173,7 +174,7 @@ class Simulation:
         """A task has come to its end; in rounds the next event may happen."""
         self.book.close(task, state, self.now, reason)
         self._audience.event_closed(task.event, state.value, self.now)
-        if isinstance(self._course.timing, Rounds):
+        if isinstance(self._schedule.timing, Rounds):
             if self._in_hand is task:
                 self._in_hand = None
             if self._in_line and not self._enough():
@@ -188,14 +189,14 @@ class Simulation:
         if self.now - task.raised > task.deadline:
             self._close(task, State.EXPIRED)  # it was taken when the deadline passed
             return
-        if isinstance(self._course.timing, Rounds):
+        if isinstance(self._schedule.timing, Rounds):
             if self._in_hand not in (None, task):
                 self._in_line.append(task)
                 return
             self._in_hand = task
         task.state = State.REPORTED
-        self._crew.freshen(self.now)
-        on_air = self._crew.on_air
+        self._presence.freshen(self.now)
+        on_air = self._presence.on_air
         if not on_air:
             self._put_off(task, "nobody is on the air")
             return
@@ -217,7 +218,7 @@ class Simulation:
         found = squared_distance(robots[award.auctioneer].position, site)
         if award.winner is not None:
             found = min(found, squared_distance(robots[award.winner].position, site))
-        self.tally.closest += self._crew.nobody_nearer(site, found)
+        self.tally.closest += self._presence.nobody_nearer(site, found)
         self._audience.awarded(task.event, award, self.now)
         winner = None if award.winner is None else robots[award.winner]
         set_off = [self._relocate(move, winner, task) for move in award.moves]
@@ -239,10 +240,10 @@ class Simulation:
 
     def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
         """The task waits; in rounds, where nothing is lost on the air, life is over."""
-        timing = self._course.timing
+        timing = self._schedule.timing
         if isinstance(timing, Rounds):
             patience = timing.offers if self._talks.radio.takes_time else 1
-            if task.offers < patience and self._crew.on_air:
+            if task.offers < patience and self._presence.on_air:
                 self._agenda.at(self.now, partial(self._offer, task))
                 return
             self._close(task, State.LOST, why)
@@ -261,28 +262,28 @@ class Simulation:
 
     def _send(self, robot: Robot, task: Task) -> None:
         """The robot sets off."""
-        self._crew.stand(self.now)
+        self._presence.stand(self.now)
         task.state, task.taken = State.TAKEN, self.now
         robot.engaged = True
         self._since[robot.id] = self.now
         self._trips[robot.id] = task
         self._audience.departed(task.event, robot.id, self.now)
         self._motion.depart(robot, task.event.position)
-        self._crew.show_plans(self.now)
+        self._presence.show_plans(self.now)
 
     def _relocate(self, move: Move, winner: Robot | None, task: Task) -> bool:
         """A robot goes to a place that is no event; it carries the task if nobody has won it."""
         robot = self.fleet.robots[move.robot]
         if robot.engaged or not robot.able or not robot.alive:
             return False
-        self._crew.stand(self.now)
+        self._presence.stand(self.now)
         self.tally.relocations += 1
         robot.engaged = True
         self._since[robot.id] = self.now
         self._relocating[robot.id] = task, winner is None
         self._audience.relocating(task.event, move, self.now)
         self._motion.depart(robot, move.position)
-        self._crew.show_plans(self.now)
+        self._presence.show_plans(self.now)
         return True
 
     def _relocated(self, robot: Robot, trip: Trip) -> None:
@@ -306,7 +307,7 @@ class Simulation:
         if trip.outcome != "arrived":
             robot.failed_sites.add(trip.site)
         if robot.battery.charge == 0.0:
-            self._crew.bury(robot)
+            self._presence.bury(robot)
         if robot.id in self._relocating:
             self._relocated(robot, trip)
             return
@@ -343,7 +344,7 @@ class Simulation:
     def _raise_again(self, robot: Robot, task: Task) -> None:
         """Its robot did not make it: ask for another, at once or when its silence is noticed."""
         task.state = State.WAITING
-        timing = self._course.timing
+        timing = self._schedule.timing
         if isinstance(timing, Rounds) or robot.on_air:
             self._offer_again(task)
         else:
@@ -351,8 +352,8 @@ class Simulation:
 
     def _offer_again(self, task: Task) -> None:
         """At once, if there is anybody to offer it to."""
-        if self._crew.on_air:
-            task.offers = 0 if isinstance(self._course.timing, Rounds) else task.offers
+        if self._presence.on_air:
+            task.offers = 0 if isinstance(self._schedule.timing, Rounds) else task.offers
             self._offer(task)
         else:
             self._put_off(task, "nobody is on the air")
@@ -373,10 +374,10 @@ class Simulation:
         if robot.id in self._trips or robot.id in self._relocating:
             self._motion.halt(robot)
         if fault.what == "all":
-            self._crew.bury(robot)
+            self._presence.bury(robot)
 
     def _summary(self, wall_time: float) -> Summary:
-        timing, radio = self._course.timing, self._talks.radio
+        timing, radio = self._schedule.timing, self._talks.radio
         figures = None
         if isinstance(timing, Stream):
             figures = stream_figures(

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from fleet.energy import ExtraPower, PowerModel
 from fleet.faults import Blackout, Faults, PlannedBreakdown
+from fleet.modes import Rounds, Stream
 from fleet.motion.options import DriveOptions
+from fleet.power import ExtraPower, PowerModel
 from fleet.radio.lossy import RadioSpec
 from fleet.results import Summary
 from fleet.robot import RobotSpec
 from fleet.scenario.model import Scenario
-from fleet.stream import StreamFigures
-from fleet.timing import Rounds, Stream
+from fleet.service import StreamFigures
 from worlds.catalogue import EVENTS, WORLDS
 from worlds.sensors import SensorSpec
 

@@ -16,9 +16,9 @@ def command() -> None:
     from rich.markup import escape
     from rich.table import Table
 
+    from fleet.modes import TIMINGS
     from fleet.motion.motions import MOTIONS
     from fleet.radio.catalogue import RADIOS
-    from fleet.timing import TIMINGS
     from protocols.catalogue import METRICS, PROTOCOLS
     from worlds.catalogue import EVENTS, WORLDS
 

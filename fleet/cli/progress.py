@@ -7,7 +7,7 @@ from time import monotonic
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from fleet.crew import Fleet
+from fleet.fleet import Fleet
 from fleet.motion import Trip
 from fleet.observer import Observer
 from fleet.results import Summary

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from fleet.results import Summary
-from fleet.stream import StreamFigures
+from fleet.service import StreamFigures
 
 
 def print_summary(summary: Summary) -> None:

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.energy import Battery
 from fleet.motion import Outcome, Trip
 from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
 from fleet.motion.movers import Account, Movers
 from fleet.motion.options import DriveOptions
 from fleet.motion.params import fine_substeps, params_of
 from fleet.motion.planning import Planner, corners
+from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena

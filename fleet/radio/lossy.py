@@ -74,7 +74,7 @@ class LossyRadio:
     def __init__(
         self, robots: Sequence[Point], radio_range: float, graph: str, spec: RadioSpec, seed: int
     ) -> None:
-        from fleet.radio import airwaves
+        from fleet.radio import propagation
         from protocols.topology.cells import Cells
         from protocols.topology.neighbourhood import GRAPHS
 
@@ -85,9 +85,9 @@ class LossyRadio:
             )
         self.spec = spec
         self.beacons = 0
-        self._kernels = airwaves
+        self._kernels = propagation
         self._graph = GRAPHS[graph]
-        self._air = airwaves.Air(
+        self._air = propagation.Air(
             seed, radio_range, spec.loss, spec.loss_at_range, spec.falloff, spec.shadowing,
             spec.path_loss,
         )  # fmt: skip
@@ -98,14 +98,14 @@ class LossyRadio:
         for robot, position in enumerate(robots):
             self._cells.move(robot, position)
         self._on_air = np.ones(n, np.bool_)
-        degree = n * np.pi * airwaves.farthest(self._air) ** 2 / self._area(robots)
+        degree = n * np.pi * propagation.farthest(self._air) ** 2 / self._area(robots)
         capacity = int(min(max(32, 3 * degree), n))
         self._known = np.zeros((n, max(capacity, 1)), np.int64)
         self._x, self._y, self._heard_at = (np.zeros(self._known.shape) for _ in range(3))
         self._size = np.zeros(n, np.int64)
         self._chosen = np.zeros(self._known.shape[1], np.int64)
         self._sent = np.zeros(n, np.int64)
-        phases = [airwaves.chance(seed, airwaves.PHASE, k, 0, 0) for k in range(n)]
+        phases = [propagation.chance(seed, propagation.PHASE, k, 0, 0) for k in range(n)]
         self._due = spec.beacon_interval * (np.array(phases) - 1.0)
         self.tables: Sequence[Mapping[RobotId, Point]] = _Tables(self)
         self._beacon(0.0)  # everybody has said hello once before the run begins

@@ -17,8 +17,8 @@ from fleet.replay.writer_process import WriterProcess
 from protocols.messages import Award, Event, Move, RobotId
 
 if TYPE_CHECKING:
-    from fleet.crew import Fleet
-    from fleet.energy import Battery
+    from fleet.fleet import Fleet
+    from fleet.power import Battery
     from fleet.results import Summary
 
 MANY_POSES = 50_000  # that are held back at most

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from inspect import isclass
 from typing import Any
 
+from fleet.modes import TIMINGS, Rounds, Stream
 from fleet.motion import Motion
 from fleet.motion.motions import MOTIONS
 from fleet.radio.catalogue import RADIOS
@@ -16,7 +17,6 @@ from fleet.scenario.errors import bad, unknown
 from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
 from fleet.scenario.rehearsal import rehearse
-from fleet.timing import TIMINGS, Rounds, Stream
 from protocols.catalogue import PROTOCOLS
 from protocols.messages import ProtocolFunction
 from worlds.arena import Arena

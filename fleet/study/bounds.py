@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.assembly import make_course, start, streams
-from fleet.course import Course
+from fleet.assembly import make_schedule, start, streams
 from fleet.scenario.choices import make_world
 from fleet.scenario.model import Scenario
+from fleet.schedule import Schedule
 
 SITES = 2000  # events looked at to tell how far the nearest robot is, and more if they last
 
@@ -43,22 +43,22 @@ def bounds(scenario: Scenario) -> Bounds:
     random = streams(scenario.seed)
     world = make_world(scenario.world)
     starts = np.array(start(world, scenario, 0.0, random["placement"]))
-    course = make_course(scenario, world, len(starts), random)
-    sites = _next_sites(course, SITES)
+    schedule = make_schedule(scenario, world, len(starts), random)
+    sites = _next_sites(schedule, SITES)
     spec = scenario.robot
     reach = spec.capacity * len(starts) / spec.power.per_metre(spec.cruise)  # [m], of them all
     nearest = float(_distances(sites, starts).min(axis=1).mean())  # [m]
     while (most := _most(starts, sites, reach)) == len(sites):
-        more = _next_sites(course, len(sites))
+        more = _next_sites(schedule, len(sites))
         if not len(more):
             break  # there are no more events
         sites = np.vstack([sites, more])
     return Bounds(reach / nearest, most)
 
 
-def _next_sites(course: Course, count: int) -> NDArray[np.float64]:
+def _next_sites(schedule: Schedule, count: int) -> NDArray[np.float64]:
     """Where the next events happen (at most count, 2) [m]."""
-    places = [occurrence.position for occurrence in islice(course.occurrences, count)]
+    places = [occurrence.position for occurrence in islice(schedule.occurrences, count)]
     return np.array(places, float).reshape(-1, 2)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-from fleet.crew import Fleet
+from fleet.fleet import Fleet
 from fleet.motion import Trip
 from fleet.observer import Excerpt, Observer
 from fleet.results import Summary

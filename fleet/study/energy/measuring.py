@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from fleet.assembly import run, start, streams
-from fleet.crew import Fleet
-from fleet.energy import Battery
+from fleet.fleet import Fleet
 from fleet.motion import Motion, Trip
 from fleet.observer import Observer
+from fleet.power import Battery
 from fleet.results import Summary
 from fleet.robot import Robot, RobotSpec
 from fleet.scenario.choices import make_motion, make_world

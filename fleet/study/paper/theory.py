@@ -9,7 +9,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from fleet.assembly import run
-from fleet.crew import Fleet
+from fleet.fleet import Fleet
 from fleet.observer import Excerpt, Observer
 from fleet.scenario.model import Scenario
 from fleet.study.paper.campaign import RANGES

@@ -10,10 +10,10 @@ import pytest
 from click.testing import CliRunner
 
 from fleet.cli import main
+from fleet.modes import TIMINGS
 from fleet.motion.motions import MOTIONS
 from fleet.radio.catalogue import RADIOS
 from fleet.results import Summary
-from fleet.timing import TIMINGS
 from protocols.catalogue import METRICS, PROTOCOLS
 from worlds.catalogue import EVENTS, WORLDS
 

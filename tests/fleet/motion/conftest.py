@@ -7,10 +7,10 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from fleet.energy import Battery
 from fleet.motion.driven import DrivenMotion
 from fleet.motion.kernels.records import LINE
 from fleet.motion.options import DriveOptions
+from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
 from worlds.arena import Arena, scatter
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.energy import ExtraPower, PowerModel
 from fleet.motion.kernels.records import ARC, LINE
+from fleet.power import ExtraPower, PowerModel
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
 from worlds.shapes import Polygon

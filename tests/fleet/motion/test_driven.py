@@ -8,10 +8,10 @@ from math import cos, dist, inf, nan, pi, sin
 import numpy as np
 import pytest
 
-from fleet.energy import ExtraPower
 from fleet.motion.driven import DrivenMotion
 from fleet.motion.motions import MOTIONS
 from fleet.motion.options import DriveOptions
+from fleet.power import ExtraPower
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
 from worlds.shapes import Polygon

@@ -105,7 +105,7 @@ SCRIPT = """
 import json, sys
 from math import inf, pi
 import numpy as np
-from fleet.energy import Battery
+from fleet.power import Battery
 from fleet.motion.driven import DrivenMotion
 from fleet.robot import Robot, RobotSpec
 from worlds.arena import Arena, scatter

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from gaps import least_gap
 
-from fleet.energy import Battery
 from fleet.motion.driven import DrivenMotion
+from fleet.power import Battery
 from fleet.robot import PRESETS, Robot
 from worlds.catalogue import WORLDS
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fleet.energy import Battery
 from fleet.motion.straight import StraightMotion
+from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
 
 SPEC = RobotSpec()

@@ -12,7 +12,7 @@ from gaps import least_gap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.energy import ExtraPower
+from fleet.power import ExtraPower
 from fleet.robot import PRESETS, RobotSpec
 from worlds.arena import Arena
 from worlds.catalogue import WORLDS

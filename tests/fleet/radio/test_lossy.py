@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hand_drawn import random_connected, random_points
 
-from fleet.energy import Battery
-from fleet.radio import BrokenProtocol, airwaves
+from fleet.power import Battery
+from fleet.radio import BrokenProtocol, propagation
 from fleet.radio.lossy import LossyRadio, RadioSpec
 from fleet.robot import Robot
 from protocols.messages import Transmission
@@ -25,15 +25,15 @@ def robot_at(id, place):
 
 
 def test_chance_is_even_and_depends_on_everything():
-    draws = np.array([airwaves.chance(1, 1, k, 2, 3) for k in range(20_000)])
+    draws = np.array([propagation.chance(1, 1, k, 2, 3) for k in range(20_000)])
     assert draws.min() >= 0.0
     assert draws.max() < 1.0
     assert draws.mean() == pytest.approx(0.5, abs=0.01)
     assert np.histogram(draws, 10, (0, 1))[0] == pytest.approx([2000] * 10, rel=0.1)
     assert abs(np.corrcoef(draws[:-1], draws[1:])[0, 1]) < 0.03
-    one = airwaves.chance(1, 1, 1, 2, 3)
+    one = propagation.chance(1, 1, 1, 2, 3)
     others = [(2, 1, 1, 2, 3), (1, 2, 1, 2, 3), (1, 1, 1, 3, 2), (1, 1, 1, 2, 4)]
-    assert all(airwaves.chance(*other) != one for other in others)
+    assert all(propagation.chance(*other) != one for other in others)
 
 
 @pytest.mark.parametrize("graph", ["gabriel", "udg", "rng"])
@@ -120,13 +120,13 @@ def test_loss_grows_with_distance():
 
 
 def test_shadowing_makes_each_link_s_range_its_own_and_the_same_both_ways():
-    air = airwaves.Air(5, 2.5, 0.0, 0.0, 4.0, 4.0, 3.0)
-    reaches = np.array([airwaves.reach(air, 0, v) for v in range(1, 2000)])
+    air = propagation.Air(5, 2.5, 0.0, 0.0, 4.0, 4.0, 3.0)
+    reaches = np.array([propagation.reach(air, 0, v) for v in range(1, 2000)])
     assert np.median(reaches) == pytest.approx(2.5, rel=0.03)
     decibels = 10.0 * air.path_loss * np.log10(reaches / 2.5)
     assert decibels.std() == pytest.approx(4.0 * 0.96, rel=0.04)  # cut off at two deviations
-    assert reaches.max() <= airwaves.farthest(air)
-    assert airwaves.reach(air, 3, 8) == airwaves.reach(air, 8, 3)
+    assert reaches.max() <= propagation.farthest(air)
+    assert propagation.reach(air, 3, 8) == propagation.reach(air, 8, 3)
 
 
 def test_two_radios_of_one_seed_agree_whatever_was_sent_before():

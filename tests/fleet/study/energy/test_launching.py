@@ -8,8 +8,8 @@ from math import inf, isnan, pi
 import numpy as np
 import pytest
 
-from fleet.energy import Battery, ExtraPower
 from fleet.motion.driven import DrivenMotion
+from fleet.power import Battery, ExtraPower
 from fleet.robot import PRESETS, Robot, RobotSpec
 from fleet.study.energy.launching import launch_cost, pivot_cost, ramps_cost
 from worlds.arena import Arena

@@ -29,7 +29,7 @@ LISTENING = 2.0  # how long an auctioneer waits for bids once it has called [s]
 
 
 @dataclass(slots=True, eq=False)
-class Talk:
+class Dialogue:
     """A conversation under way."""
 
     task: Task
@@ -72,7 +72,7 @@ class Conversations:
         self.tally.conversations += 1
         words = self.protocol(self.view, task.event, source)
         if self.radio.takes_time:
-            self._go_on(Talk(task, source, words), None, now)
+            self._go_on(Dialogue(task, source, words), None, now)
         else:
             self._play_at_once(task, words, now)
 
@@ -109,7 +109,7 @@ class Conversations:
         self.under_way -= 1
         self.concluded(task, award)
 
-    def _go_on(self, talk: Talk, heard: Heard | None, now: float) -> None:
+    def _go_on(self, talk: Dialogue, heard: Heard | None, now: float) -> None:
         """Play until what is on the air has been heard, or all is said."""
         say, robots = talk.words.send, self.robots
         while True:
@@ -142,7 +142,9 @@ class Conversations:
         if self.frame_energy:
             self.robots[transmission.sender].battery.drain(self.frame_energy * attempts)
 
-    def _in_time(self, talk: Talk, transmission: Transmission, heard: Heard, now: float) -> Heard:
+    def _in_time(
+        self, talk: Dialogue, transmission: Transmission, heard: Heard, now: float
+    ) -> Heard:
         """What counts as heard over a radio that takes time: late bids do not."""
         if not heard:
             self.tally.unheard += 1
@@ -156,13 +158,13 @@ class Conversations:
                 talk.here = heard[0]
         return heard
 
-    def _wait(self, talk: Talk, heard: Heard, until: float) -> None:
+    def _wait(self, talk: Dialogue, heard: Heard, until: float) -> None:
         if talk.hops > HOPS_PER_ROBOT * len(self.robots):
             self.agenda.at(until, lambda: self._restart(talk, until))
         else:
             self.agenda.at(until, lambda: self._go_on(talk, heard, until))
 
-    def _restart(self, talk: Talk, now: float) -> None:
+    def _restart(self, talk: Dialogue, now: float) -> None:
         """The packet has gone round in circles: search anew from where it stands."""
         talk.words.close()
         if talk.restarts == RESTARTS or not self.robots[talk.here].on_air:
@@ -174,7 +176,7 @@ class Conversations:
         talk.words = self.protocol(self.view, talk.task.event, talk.here)
         self._go_on(talk, None, now)
 
-    def _break(self, talk: Talk, why: str) -> None:
+    def _break(self, talk: Dialogue, why: str) -> None:
         talk.words.close()
         self.under_way -= 1
         self.tally.broken += 1

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fleet.energy import Battery, PowerModel
+from fleet.power import Battery, PowerModel
 from fleet.robot import RobotSpec
 
 

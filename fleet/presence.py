@@ -3,46 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 
 from fleet.faults import Blackout
+from fleet.fleet import Fleet
 from fleet.motion import Motion
 from fleet.observer import Audience
 from fleet.radio import Radio
-from fleet.robot import Robot, RobotSpec, SeenRobot
+from fleet.robot import Robot, SeenRobot
 from protocols.messages import Point, RobotId, View
-from protocols.topology import Topology
-from worlds.arena import Arena
 
 REFRESH = 0.1  # links are at most so old while robots drive and anybody talks or beacons [s]
 
 
-@dataclass(frozen=True, slots=True)
-class Labels:
-    """What a run is called in its summary and in its recording."""
-
-    protocol: str
-    motion: str
-    world: str
-    seed: int
-    search_radius: float  # [m]
-
-
-@dataclass(frozen=True, slots=True)
-class Fleet:
-    """A fleet in its world, live: robots and topology change as the run goes on."""
-
-    labels: Labels
-    arena: Arena
-    spec: RobotSpec
-    robots: Sequence[Robot]
-    topology: Topology  # the true one, whatever robots believe
-
-
-class Crew:
+class Presence:
     """The fleet's robots as they are now, for the radio, the handler and observers.
 
     ``on_air`` lists the robots that can be talked to, ascending; ``view`` is what conversations

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fleet.faults import Blackout, Breakdown
-from fleet.timing import Rounds, Stream
+from fleet.modes import Rounds, Stream
 from worlds.events import Occurrence
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class Schedule:
     """How time goes, what happens, what breaks, and when it is over."""
 
     timing: Rounds | Stream

@@ -1,0 +1,32 @@
+"""The fleet of a run: its robots, in their world, with their links."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from fleet.robot import Robot, RobotSpec
+from protocols.topology import Topology
+from worlds.arena import Arena
+
+
+@dataclass(frozen=True, slots=True)
+class RunLabels:
+    """What a run is called in its summary and in its recording."""
+
+    protocol: str
+    motion: str
+    world: str
+    seed: int
+    search_radius: float  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """A fleet in its world, live: robots and topology change as the run goes on."""
+
+    labels: RunLabels
+    arena: Arena
+    spec: RobotSpec
+    robots: Sequence[Robot]
+    topology: Topology  # the true one, whatever robots believe
