@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from math import inf, pi
@@ -43,27 +42,19 @@ STREAMS = ("placement", "sites", "collector", "heading", "times", "radio", "faul
 
 ATTEMPTS = 2000  # placements drawn in search of a connected network
 MOST_LINKS = 20_000_000  # twice the unit disc links that fit into memory and patience
-COMPILE_ABOVE = 200  # robots from which loading the compiler pays within one run
 
 
-def run(
-    scenario: Scenario, observers: Sequence[Observer] = (), *, compiled: bool | None = None
-) -> Summary:
+def run(scenario: Scenario, observers: Sequence[Observer] = ()) -> Summary:
     """Play the scenario to its end.
-
-    ``compiled`` says whether the topology's loop is compiled where nothing else is; None: if
-    that pays within one run, or the compiler is loaded already. It changes no result.
 
     Raises:
         BadInput: something in the scenario does not exist, or does not fit.
         ImpossibleWorld: no connected network of these robots was found in this world.
     """
-    return prepare(scenario, observers, compiled=compiled).run()
+    return prepare(scenario, observers).run()
 
 
-def prepare(
-    scenario: Scenario, observers: Sequence[Observer] = (), *, compiled: bool | None = None
-) -> Simulation:
+def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulation:
     """The simulation of ``scenario``, everybody in place; see :func:`run`.
 
     Raises:
@@ -78,13 +69,9 @@ def prepare(
     solid = MOTIONS[scenario.motion.name].solid
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     radio_choice = radio_spec(scenario.radio)
-    if compiled is None:
-        compiled = len(points) > COMPILE_ABOVE or "numba" in sys.modules
-    compiled = compiled or solid or radio_choice is not None
-    topology = Topology(points, scenario.range, scenario.graph, compiled=compiled)
-    radio: Radio = IdealRadio(topology)
-    if radio_choice is not None:
-        radio = lossy_radio(points, scenario, radio_choice, random["radio"])
+    lossy = radio_choice and lossy_radio(points, scenario, radio_choice, random["radio"])
+    topology = Topology(points, scenario.range, scenario.graph)
+    radio: Radio = lossy or IdealRadio(topology)
     headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
     robots = [
         Robot(

@@ -35,7 +35,7 @@ def network(
     graph: GraphName = "gabriel",
     energy: float | Sequence[float] = 100.0,
     *,
-    compiled: bool = False,
+    compiled: bool | None = None,
 ) -> list[Still]:
     """Robots at these positions [m], linked as the topology says."""
     topology = Topology(positions, radio_range, graph, compiled=compiled)

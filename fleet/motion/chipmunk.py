@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from llvmlite import ir
-from numba import types
+from numba import config, types
 from numba.extending import intrinsic
 
 from fleet.motion.kernels.records import Wires
@@ -169,7 +169,12 @@ def _address(ffi: Any, of: Any) -> int:
 
 @cache
 def trusted() -> bool:
-    """Whether a step over the bridge does, bit for bit, what the public interface does."""
+    """Whether a step over the bridge does, bit for bit, what the public interface does.
+
+    Only compiled code can cross it.
+    """
+    if config.DISABLE_JIT:
+        return False
     import pymunk
 
     def world() -> tuple[pymunk.Space, pymunk.Body]:

@@ -15,5 +15,5 @@ def play(task: Task) -> dict[str, Any]:
     from fleet.study.recording import TABLES
 
     watchers = {name: TABLES[name]() for name in task.tables}
-    row = run(scenario_from(task.scenario), list(watchers.values()), compiled=True).as_dict()
+    row = run(scenario_from(task.scenario), list(watchers.values())).as_dict()
     return row | {"tables": {name: watcher.rows for name, watcher in watchers.items()}}

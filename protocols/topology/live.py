@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, get_args, overload
 
@@ -13,6 +14,7 @@ from protocols.topology.graphs import Edges, GraphName, edges
 if TYPE_CHECKING:
     from protocols.topology.neighbourhood import Neighbourhood
 
+COMPILE_ABOVE = 200  # robots from which loading the compiler pays within one run
 NOWHERE: Point = (float("nan"), float("nan"))  # of a robot that is off the air
 
 
@@ -23,9 +25,10 @@ class Topology:
     The sequence stays the same object; its mappings are replaced, not changed, so one that was
     read stays as it was.
 
-    With ``compiled`` a moved robot costs time by the size of its neighbourhood, whatever the
-    size of the fleet; without, and for the spanning tree, all is computed anew, which is
-    quicker for a few hundred moves of a small fleet than loading the compiler is.
+    Compiled, a moved robot costs time by the size of its neighbourhood, whatever the size of
+    the fleet. For the spanning tree all is computed anew, as it is for a small fleet while the
+    compiler is not loaded: that takes as long as some 400 moves of 100 robots. Tests choose
+    by ``compiled``.
 
     Raises:
         ValueError: the range is not positive, or there is no graph of that name.
@@ -37,7 +40,7 @@ class Topology:
         radio_range: float,
         graph: GraphName = "gabriel",
         *,
-        compiled: bool = False,
+        compiled: bool | None = None,
     ) -> None:
         if not radio_range > 0.0:
             raise ValueError(f"radio range {radio_range} m; expected more than 0")
@@ -49,6 +52,8 @@ class Topology:
         self.positions: list[Point] = list(positions)
         self._links: Neighbourhood | None = None
         self.neighbours = Tables(self.positions)
+        if compiled is None:
+            compiled = len(positions) > COMPILE_ABOVE or "numba" in sys.modules
         if compiled and graph != "emst":
             from protocols.topology.neighbourhood import Neighbourhood
 
