@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import inspect
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
+from datetime import date, time
 from functools import cache, partial
+from math import inf, isnan
+from types import NoneType
 from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
-from fleet.scenario.errors import BadInput, bad, sentence, unknown
+from fleet.scenario.errors import BadInput, bad, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.numbers import numbers
 from fleet.scenario.plugins import load_object, looks_like_file
@@ -21,6 +24,7 @@ from worlds.occupancy import OccupancyGrid
 from worlds.shapes import FloatArray
 
 T = TypeVar("T")
+MOST = 1e12  # of any number: nothing of a fleet is larger, and its square is still a number
 
 
 def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> partial[T]:
@@ -74,7 +78,7 @@ def convert(kind: Any, value: Any, key: str) -> Any:
         return numbers(value, key)
     if kind is OccupancyGrid:
         return occupancy_grid(value, key)
-    problems = list(_unknown_keys(kind, value, key))
+    problems = [*unusable(value, key), *_unknown_keys(kind, value, key)]
     if not problems:
         try:
             return adapter(kind).validate_json(json.dumps(value), strict=True)
@@ -108,7 +112,7 @@ def metric(value: Any, key: str) -> Metric:
     table = dict(table) if isinstance(table, Mapping) else {}
     name = table.pop("name", None)
     if not isinstance(name, str):
-        raise bad(key, f"is {value!r}; expected the name of a metric, or a table with one")
+        raise bad(key, f"is {shown(value)}; expected the name of a metric, or a table with one")
     if looks_like_file(name):
         function: Any = load_object(name, key)
     elif name in METRICS:
@@ -136,6 +140,27 @@ def build(function: Callable[..., T], table: Mapping[str, Any], key: str) -> T:
         return make()
     except ValueError as error:
         raise bad(key, str(error)) from error
+
+
+def unusable(value: Any, key: str) -> Iterator[tuple[str, str]]:
+    """Values that no key takes, however deep in tables and lists: TOML has dates, and numbers of
+    any size.
+    """
+    if isinstance(value, Mapping):
+        for name, item in value.items():
+            yield from unusable(item, f"{key}.{name}" if key else name)
+    elif isinstance(value, list | tuple):
+        for k, item in enumerate(value):
+            yield from unusable(item, f"{key}[{k}]")
+    elif isinstance(value, date | time):
+        yield key, f"is {value}, a date or time; expected a number, text, a list or a table"
+    elif isinstance(value, int | float):
+        if isinstance(value, float) and isnan(value):
+            yield key, "is nan; expected a number"
+        elif MOST < abs(value) < inf and not (isinstance(value, int) and key == "seed"):
+            yield key, f"is {shown(value)}; expected at most {MOST:g}"
+    elif not isinstance(value, str | NoneType):
+        yield key, f"is {shown(value)}; expected a number, text, a list or a table"
 
 
 def _unknown_parameter(name: str, accepted: Mapping[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from inspect import isclass
 from typing import Any
 
@@ -13,10 +13,10 @@ from fleet.radio.catalogue import RADIOS
 from fleet.radio.lossy import RadioSpec
 from fleet.robot import RobotSpec
 from fleet.scenario.binding import bind, build, keywords
-from fleet.scenario.errors import bad, unknown
-from fleet.scenario.model import Choice, Scenario
+from fleet.scenario.errors import bad, shown, unknown
+from fleet.scenario.model import Choice, Scenario, plain
 from fleet.scenario.plugins import load_object, looks_like_file
-from fleet.scenario.rehearsal import rehearse
+from fleet.scenario.rehearsal import guarded, rehearse
 from protocols.catalogue import PROTOCOLS
 from protocols.messages import ProtocolFunction
 from worlds.arena import Arena
@@ -53,8 +53,11 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
         raise bad("protocol", unknown("protocol", name, PROTOCOLS))
     accepted = keywords(function)
     search = parameters.get("search", {})
+    if "search" in accepted and not isinstance(search, Mapping):
+        raise bad("protocol.search", f"is {shown(search)}; expected a table")
     if "radius" in search or "search_radius" in parameters:
-        raise bad("protocol", "its search radius is the scenario's; set search_radius instead")
+        wrong = "search_radius" if "search_radius" in parameters else "search.radius"
+        raise bad(f"protocol.{wrong}", "is the scenario's; set search_radius instead")
     if "search" in accepted:
         parameters["search"] = {**search, "radius": scenario.search_radius}
     elif "search_radius" in accepted:
@@ -62,6 +65,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     made: ProtocolFunction = (build if isclass(function) else bind)(
         function, parameters, "protocol"
     )
+    made = guarded(made, name, plain(scenario.protocol))
     rehearse(made, name)
     return made
 

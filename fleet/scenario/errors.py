@@ -6,6 +6,10 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+MOST_SHOWN = 60  # characters of a value that is echoed
+MOST_SAID = 300  # characters of one sentence
+MOST_LISTED = 12  # names that are listed where none is near
+
 
 class BadInput(ValueError):
     """Something the user gave cannot be used. ``problems`` are (key, sentence) pairs."""
@@ -22,13 +26,39 @@ def bad(key: str, text: str) -> BadInput:
     return BadInput([(key, text)])
 
 
+def shown(value: Any, most: int = MOST_SHOWN) -> str:
+    """``value`` as it is echoed to whoever gave it: on one line, shortened in its middle."""
+    if isinstance(value, int) and abs(value) >= 10**most:
+        return f"a whole number of {value.bit_length() * 0.30103:.0f} digits"
+    if isinstance(value, list | tuple | dict) and len(value) > most:  # half of it will do
+        value = list(value)[:most]
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # nested too deeply, or with numbers too long to write
+        return f"a {type(value).__name__}"
+    return shortened(text, most)
+
+
+def shortened(text: str, most: int) -> str:
+    """``text`` on one line, without its middle if it is longer than ``most`` characters."""
+    text = "".join(c if c.isprintable() else "·" for c in " ".join(text.split()))
+    if len(text) <= most:
+        return text
+    half = (most - 1) // 2
+    return f"{text[:half]}…{text[-half:]}"
+
+
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
-    """``name`` is not among the ``known`` ones; the near matches, or all."""
+    """``name`` is not among the ``known`` ones; the near matches, or all if they are few."""
     names = sorted(known)
-    near = get_close_matches(name, names, 3, 0.6)
+    folded = {n.casefold(): n for n in reversed(names)}
+    near = get_close_matches(name.casefold()[:MOST_SHOWN], folded, 3, 0.6)
+    said = f"unknown {what} {shown(name)}"
     if near:
-        return f"unknown {what} {name!r}; did you mean {or_list(near)}?"
-    return f"unknown {what} {name!r}; expected {or_list(names)}"
+        return f"{said}; did you mean {or_list(folded[n] for n in near)}?"
+    if len(names) > MOST_LISTED:
+        return f"{said}; expected one of {len(names)}, such as {or_list(names[:3])}"
+    return f"{said}; expected {or_list(names)}"
 
 
 def or_list(names: Iterable[str]) -> str:
@@ -58,8 +88,8 @@ def sentence(kind: str, value: Any, context: dict[str, Any], message: str) -> st
     if kind == "missing":
         return "is missing; it is required"
     if kind == "literal_error":
-        return f"is {value!r}; expected {context['expected']}"
+        return f"is {shown(value)}; expected {context['expected']}"
     expected = EXPECTED.get(kind)
     if expected is None:
-        return f"is {value!r}; {message[0].lower()}{message[1:]}"
-    return f"is {value!r}; expected {expected}"
+        return f"is {shown(value)}; {message[0].lower()}{message[1:]}"
+    return f"is {shown(value)}; expected {expected}"

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from fleet.robot import PRESETS, RobotSpec
-from fleet.scenario.binding import convert
+from fleet.robot import PRESETS
+from fleet.scenario.binding import convert, unusable
 from fleet.scenario.choices import check
-from fleet.scenario.errors import BadInput, bad, unknown
-from fleet.scenario.model import Choice, Scenario, plain
+from fleet.scenario.errors import BadInput, bad, shortened, shown, unknown
+from fleet.scenario.model import Scenario, plain
+from fleet.scenario.paths import anchored
+from fleet.scenario.toml import Document, parse_value, read_toml
 
 CHOICES = ("protocol", "world", "motion", "time", "events", "radio")
 NAMED_BY = dict.fromkeys(CHOICES, "name") | {"robot": "preset"}
@@ -27,8 +27,9 @@ def load_scenario(
     Raises:
         BadInput: a file, key or value that cannot be used.
     """
-    data, lines = ({}, {}) if path is None else read_toml(path)
-    origins = {key: f"{path}:{line}" for key, line in lines.items()}
+    file = None if path is None else read_toml(path)
+    data: dict[str, Any] = anchored(file.data, file.path.parent) if file else {}
+    origins: dict[str, str] = {}
     for key, value in (options or {}).items():
         data = merged(data, {key: value})
         origins[key] = "--" + key.replace("_", "-")
@@ -40,7 +41,7 @@ def load_scenario(
         scenario = scenario_from(data)
         check(scenario)
     except BadInput as error:
-        raise BadInput(_located(error, origins)) from error
+        raise BadInput(_located(error, origins, file)) from error
     return scenario
 
 
@@ -50,7 +51,9 @@ def scenario_from(data: Mapping[str, Any]) -> Scenario:
     Raises:
         BadInput: an unknown key, a value of another type or out of its range.
     """
-    tables = dict(data)
+    tables = plain(data)
+    if problems := list(unusable(tables, "")):
+        raise BadInput(problems)
     for key in CHOICES:
         if key in tables:
             tables[key] = _choice(tables[key], key)
@@ -60,40 +63,20 @@ def scenario_from(data: Mapping[str, Any]) -> Scenario:
     return scenario
 
 
-def read_toml(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
-    """The tables of a TOML file, and the line that each dotted key stands in.
-
-    Raises:
-        BadInput: no such file, or not TOML.
-    """
-    try:
-        text = path.read_text("utf-8")
-        return tomllib.loads(text), _key_lines(text)
-    except FileNotFoundError:
-        near = get_close_matches(path.name, [p.name for p in path.parent.glob("*.toml")], 1, 0.6)
-        hint = f"; did you mean {str(path.parent / near[0])!r}?" if near else ""
-        raise bad("", f"{path}: no such file{hint}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise bad("", f"{path}: cannot be read: {reason}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise bad("", _not_toml(path, str(error))) from error
-
-
 def parse_setting(setting: str) -> tuple[str, Any]:
     """``key=value``: the value as in TOML, or, if it is none, as plain text.
 
     Raises:
-        BadInput: there is no ``=``, or no key.
+        BadInput: there is no ``=``, no key, or more than one value.
     """
     key, equals, text = setting.partition("=")
     key = key.strip()
-    if not equals or not re.fullmatch(r"[A-Za-z0-9_]+(\.[A-Za-z0-9_]+)*", key):
-        raise bad("--set", f"is {setting!r}; expected key=value, such as robot.radius=0.2")
+    if not equals or not re.fullmatch(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){0,9}", key):
+        raise bad("--set", f"is {shown(setting)}; expected key=value, such as robot.radius=0.2")
     try:
-        return key, tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return key, text.strip()
+        return key, parse_value(text)
+    except ValueError as error:
+        raise bad(f"--set: {shortened(key, 60)}", str(error)) from error
 
 
 def nested(key: str, value: Any) -> dict[str, Any]:
@@ -122,64 +105,57 @@ def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 def _choice(value: Any, key: str) -> dict[str, Any]:
     """A name, or a table, as the fields of a :class:`Choice`."""
     if isinstance(value, str):
-        return {"name": value, "parameters": {}}
-    if isinstance(value, Choice):
-        return {"name": value.name, "parameters": value.parameters}
+        value = {"name": value}
     if not isinstance(value, Mapping):
-        raise bad(key, f"is {value!r}; expected a name, or a table with one")
+        raise bad(key, f"is {shown(value)}; expected a name, or a table with one")
     parameters = dict(value)
-    name = parameters.pop("name", None) or getattr(Scenario(), key).name
+    name = parameters.pop("name", getattr(Scenario(), key).name)
+    if not isinstance(name, str) or not name:
+        raise bad(f"{key}.name", f"is {shown(name)}; expected a name from `fleet list`")
     return {"name": name, "parameters": parameters}
 
 
 def _robot(value: Any) -> dict[str, Any]:
     """A preset, or a table of what differs from one, as the fields of a RobotSpec."""
-    if not isinstance(value, str | Mapping | RobotSpec):
-        raise bad("robot", f"is {value!r}; expected the name of a preset, or a table")
-    table = {"preset": value} if isinstance(value, str) else plain(value)
+    if not isinstance(value, str | Mapping):
+        raise bad("robot", f"is {shown(value)}; expected the name of a preset, or a table")
+    table = {"preset": value} if isinstance(value, str) else dict(value)
     preset = table.pop("preset", "small")
+    if not isinstance(preset, str):
+        raise bad("robot.preset", f"is {shown(preset)}; expected the name of a preset")
     if preset not in PRESETS:
-        raise bad("robot.preset", unknown("preset", str(preset), PRESETS))
+        raise bad("robot.preset", unknown("preset", preset, PRESETS))
     return merged(plain(PRESETS[preset]), table)
 
 
-def _located(error: BadInput, origins: Mapping[str, str]) -> list[tuple[str, str]]:
+def _located(
+    error: BadInput, origins: Mapping[str, str], file: Document | None
+) -> list[tuple[str, str]]:
     """The problems with where their key was set: a line of the file, or an option."""
     located = []
     for key, text in error.problems:
-        set_by = key
-        while set_by and set_by not in origins:
-            set_by = set_by.rpartition(".")[0]
-        if not set_by and key:  # something in a table that was set from below
-            set_by = next((k for k in origins if k.startswith(f"{key}.")), "")
-        if not set_by:  # a range is checked for the whole table; its sentence names the key
-            named = re.match(r"(?:\w+ )?(\w+) is ", text)
-            inner = ".".join(filter(None, (key, named[1] if named else "")))
-            set_by = inner if inner in origins else ""
-        located.append((": ".join(filter(None, (origins.get(set_by, ""), key))), text))
+        named = re.match(r"(?:\w+ )?(\w+) (?=is )", text)  # a range is checked for a whole table
+        inner = ".".join(filter(None, (key, named[1]))) if named else key
+        by_option = _set_by(inner, origins)
+        if not by_option and (file is None or inner not in file.lines):
+            by_option = _set_by(key, origins)
+        if by_option:
+            option, exact = origins[by_option], by_option == inner
+            said = text[named.end() :] if named and exact else text
+            located.append((option if exact and option != "--set" else f"{option}: {inner}", said))
+        elif file is None:
+            located.append((key, text))
+        else:
+            place = file.place(inner if inner in file.lines else key)
+            located.append((": ".join(filter(None, (place, key))), text))
     return located
 
 
-HEADER = re.compile(r"^\s*\[\[?\s*([^\]]+?)\s*\]\]?")
-ENTRY = re.compile(r"^\s*([\w.\"'-]+?)\s*=")
-
-
-def _key_lines(text: str) -> dict[str, int]:
-    """The first line that each dotted key of a TOML text stands in; inline tables as one."""
-    lines: dict[str, int] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), 1):
-        if header := HEADER.match(line):
-            table = re.sub(r"[\"'\s]", "", header[1])
-            lines.setdefault(table, number)
-        elif entry := ENTRY.match(line):
-            key = re.sub(r"[\"'\s]", "", entry[1])
-            lines.setdefault(f"{table}.{key}" if table else key, number)
-    return lines
-
-
-def _not_toml(path: Path, message: str) -> str:
-    where = re.search(r"\(at line (\d+), column (\d+)\)", message)
-    what = message[: where.start()].strip() if where else message
-    place = f"{path}:{where[1]}:{where[2]}" if where else f"{path}"
-    return f"{place}: not TOML: {what[0].lower()}{what[1:]}"
+def _set_by(key: str, origins: Mapping[str, str]) -> str:
+    """The option that set the key, or the nearest table around it, or something in it."""
+    within = key
+    while within and within not in origins:
+        within = within.rpartition(".")[0]
+    if not within and key:
+        within = next((k for k in origins if k.startswith(f"{key}.")), "")
+    return within

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
-from math import inf
 from typing import Any
 
 from fleet.faults import Faults
 from fleet.handler import HandlerName
 from fleet.robot import RobotSpec
+from fleet.scenario.errors import shown
 from protocols.topology import GraphName
 from worlds.sensors import SensorSpec
 
@@ -55,16 +55,16 @@ class Scenario:
     def __post_init__(self) -> None:
         for name, low, high in (
             ("robots", 1, 1_000_000),
-            ("rounds", 1, inf),
-            ("seed", 0, inf),
-            ("search_radius", 0, inf),
+            ("rounds", 1, 10**12),
+            ("seed", 0, 2**63 - 1),
+            ("search_radius", 0, 10**6),
         ):
             value = getattr(self, name)
             if value is not None and not low <= value <= high:
-                upto = "or more" if high == inf else f"to {high}"
-                raise ValueError(f"{name} is {value}; expected {low} {upto}")
-        if not 0.0 < self.range < inf:
-            raise ValueError(f"range is {self.range} m; expected more than 0, and finite")
+                upto = f"to {high}" if value > high or name == "robots" else "or more"
+                raise ValueError(f"{name} is {shown(value)}; expected {low} {upto}")
+        if not 1e-6 <= self.range <= 1e6:
+            raise ValueError(f"range is {self.range} m; expected more than 0, up to 1000 km")
 
     @classmethod
     def of(cls, **keys: Any) -> Scenario:

@@ -1,21 +1,33 @@
-"""Trying a protocol out before a run: two robots, one event.
+"""Trying a protocol out before a run, with two robots and one event; and during it.
 
 What is wrong with a protocol or metric of the user's, or with a parameter that only the protocol
-itself looks at, is said before anything has begun.
+itself looks at, is said before anything has begun; what goes wrong later is said as well.
 """
 
 from __future__ import annotations
 
-import traceback
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass
 from math import dist, isnan
 from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from fleet.scenario.errors import bad
-from protocols.messages import Award, Event, Point, ProtocolFunction, RobotId, Transmission
+from fleet.scenario.errors import BadInput, bad, shown
+from fleet.scenario.plugins import what, where_in
+from fleet.scenario.reading import reason
+from fleet.scenario.watchdog import Stuck, Watch
+from protocols.messages import (
+    Award,
+    Conversation,
+    Event,
+    Heard,
+    Point,
+    ProtocolFunction,
+    RobotId,
+    Transmission,
+    View,
+)
 
 PATIENCE = 10_000  # transmissions between two robots, after which a protocol never ends
 PER_METRE = 20.0  # [J/m]
@@ -45,25 +57,31 @@ def rehearse(protocol: ProtocolFunction, called: str) -> None:
     """Hold one conversation between two robots.
 
     Raises:
-        BadInput: it fails, never ends, says what is no transmission, ends without an award, or
-            hears bids that are no numbers.
+        BadInput: it refuses its parameters, never ends, says what is no transmission, ends
+            without an award, or hears bids that are no numbers.
     """
     try:
         award = _play(protocol)
-    except Exception as error:  # whatever the user's file raises is the user's to read
-        raise bad("protocol", f"{called!r} fails{_line(error)}: {_reason(error)}") from error
+    except BadInput:
+        raise
+    except ValueError as error:
+        raise bad("protocol", f"{shown(called)} fails: {reason(error)}") from error
+    except TypeError as error:
+        raise bad("protocol", f"{shown(called)} fails: {what(error)}") from error
     if not isinstance(award, Award):
-        raise bad("protocol", f"{called!r} returns {_kind(award)}; expected an Award at its end")
-    costs: list[Any] = [bid.cost for bid in award.bids]
+        raise bad(
+            "protocol", f"{shown(called)} returns {_kind(award)}; expected an Award at its end"
+        )
+    costs: list[Any] = [getattr(bid, "cost", bid) for bid in award.bids]
     for cost in costs:
         if not isinstance(cost, Real) or isnan(cost):
-            raise bad("protocol", f"{called!r}: a bid's cost is {cost!r}; expected a number")
+            raise bad(
+                "protocol", f"{shown(called)}: a bid's cost is {shown(cost)}; expected a number"
+            )
 
 
 def _play(protocol: ProtocolFunction) -> object:
     words: Any = protocol(VIEW, EVENT, 0)
-    if not isinstance(words, Generator):
-        raise TypeError(f"it returns {_kind(words)}; expected a generator of transmissions")
     heard: tuple[RobotId, ...] | None = None
     for _ in range(PATIENCE):
         try:
@@ -72,20 +90,67 @@ def _play(protocol: ProtocolFunction) -> object:
             return end.value
         if not isinstance(said, Transmission):
             raise TypeError(f"it yields {_kind(said)}; expected a Transmission")
+        if said.sender not in (0, 1):
+            raise ValueError(f"robot {shown(said.sender)} speaks; there are robots 0 and 1")
         heard = (1 - said.sender,)
-    raise RuntimeError(f"it still talks after {PATIENCE} transmissions between two robots")
+    raise ValueError(f"it still talks after {PATIENCE} transmissions between two robots")
 
 
 def _kind(value: object) -> str:
-    return "nothing" if value is None else f"{type(value).__name__} {value!r:.40}"
+    return "nothing" if value is None else f"{type(value).__name__} {shown(value, 40)}"
 
 
-def _reason(error: Exception) -> str:
-    return str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+def guarded(protocol: ProtocolFunction, called: str, parts: Mapping[str, Any]) -> ProtocolFunction:
+    """``protocol``, if anything of it is from a file of the user's, under guard for a whole run.
+
+    What it raises, and that it never says anything more, is bad input: one sentence with file
+    and line. ``parts`` are its name and parameters as the scenario has them.
+    """
+    files = [Path(text.rpartition(":")[0]).resolve() for text in _texts(parts) if ".py:" in text]
+    if not files:
+        return protocol
+    folders = [file.parent for file in files]
+    watch = Watch(folders[0])
+
+    def guard(view: View, event: Event, source: RobotId) -> Conversation:
+        heard: Heard | None = None
+        words: Any = None
+        while True:
+            try:
+                with watch:
+                    words = words or _begun(protocol(view, event, source), called)
+                    said = words.send(heard)
+            except StopIteration as end:
+                award: Award = end.value
+                return award
+            except BadInput:
+                raise
+            except (Exception, SystemExit, Stuck) as error:
+                where = next(filter(None, (where_in(error, folder) for folder in folders)), "")
+                if not where:  # none of the user's lines had a part in it
+                    raise
+                raise bad("protocol", f"{shown(called)} fails{where}: {what(error)}") from error
+            heard = yield said
+
+    return guard
 
 
-def _line(error: Exception) -> str:
-    """Where it was raised, if that is not in this program."""
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    ours = {"fleet", "protocols"} & set(Path(last.filename).parts)
-    return "" if ours else f" in line {last.lineno}"
+def _begun(words: object, called: str) -> object:
+    if isinstance(words, Generator):
+        return words
+    raise bad(
+        "protocol",
+        f"{shown(called)} returns {_kind(words)}; expected a generator of transmissions",
+    )
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts in a table, however deep."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from _texts(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts(item)

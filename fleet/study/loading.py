@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from math import prod
 from pathlib import Path
 from typing import Any
 
-from fleet.scenario.errors import BadInput, or_list, unknown
-from fleet.scenario.loading import CHOICES, ENTRY, HEADER, merged, read_toml
+from fleet.scenario.errors import BadInput, or_list, shown, unknown
+from fleet.scenario.loading import CHOICES, merged
 from fleet.scenario.model import Scenario
+from fleet.scenario.paths import anchored
+from fleet.scenario.toml import read_toml
 from fleet.study.design import MOST_PROBLEMS, Study
 from fleet.study.recording import TABLES
 
 KEYS = ("title", "scenario", "axes", "paired", "cases", "seeds", "tables", "report")
 REPORT_KEYS = ("x", "series", "baseline", "measures")
 MOST_RUNS = 10_000_000
+MOST_CELLS = 20_000  # combinations, each of which is checked before the first run
+MOST_SEED = 2**63 - 1
 
 Problems = list[tuple[str, str]]
 
@@ -26,15 +31,22 @@ def load_study(path: Path) -> Study:
     Raises:
         BadInput: a file, key or value that cannot be used; all that is wrong is said.
     """
-    data, _ = read_toml(path)
-    lines = dict(_lines(path.read_text("utf-8")))
+    document = read_toml(path)
     try:
-        return study_from(data)
+        return study_from(_anchored(document.data, path.parent))
     except BadInput as error:
-        raise BadInput(
-            (": ".join(filter(None, (_place(path, key, lines), key))), text)
-            for key, text in error.problems
-        ) from error
+        raise document.located(error) from error
+
+
+def _anchored(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """A study's tables; the paths in them are relative to its file, and now to where we are."""
+    placed = {key: anchored(value, folder) for key, value in data.items()}
+    base = placed.get("scenario")
+    if isinstance(base, str):
+        placed["scenario"] = str(folder / base)
+    elif isinstance(base, Mapping) and isinstance(base.get("file"), str):
+        placed["scenario"] = {**base, "file": str(folder / base["file"])}
+    return placed
 
 
 def study_from(data: Mapping[str, Any]) -> Study:
@@ -66,47 +78,68 @@ def study_from(data: Mapping[str, Any]) -> Study:
         cases=cases,
         seeds=_seeds(data.get("seeds", 1), problems),
         tables=_names(data.get("tables", []), problems),
-        title=str(data.get("title", "")),
+        title=_title(data.get("title", ""), problems),
         report=report,
     )
     _no_key_twice(study, problems)
     _report(study, problems)
-    if not problems and len(study) > MOST_RUNS:
-        problems.append(("", f"the study has {len(study)} runs; expected {MOST_RUNS} at most"))
+    if not problems:
+        _not_too_many(study, problems)
     if problems:
         raise BadInput(problems[:MOST_PROBLEMS])
     assert study.resolved  # or what is wrong with a cell has been raised
     return study
 
 
+def _title(value: Any, problems: Problems) -> str:
+    if isinstance(value, str):
+        return value
+    problems.append(("title", f"is {shown(value)}; expected text in quotes"))
+    return ""
+
+
+def _not_too_many(study: Study, problems: Problems) -> None:
+    """More combinations than these, or more runs, are a slip of the pen."""
+    blocks = [next(iter(block.values())) for block in study.paired]
+    lengths = [len(values) for values in (*study.axes.values(), *blocks)]
+    cells = prod(lengths) * max(1, len(study.cases))
+    if cells > MOST_CELLS:
+        problems.append(("", f"the study has {cells:.4g} cells; expected {MOST_CELLS} at most"))
+    elif cells * len(study.seeds) > MOST_RUNS:
+        runs = cells * len(study.seeds)
+        problems.append(("seeds", f"make {runs:.4g} runs; expected {MOST_RUNS} at most"))
+
+
 def _base(value: Any, problems: Problems) -> Mapping[str, Any]:
     """The scenario that is varied: a table, or the path of a scenario file."""
     if isinstance(value, str):
         try:
-            return read_toml(Path(value))[0]
+            document = read_toml(Path(value))
         except BadInput as error:
             problems += [("scenario", text) for _, text in error.problems]
             return {}
+        base: Mapping[str, Any] = anchored(document.data, document.path.parent)
+        return base
     if isinstance(value, Scenario):
         return value.as_dict()
     if not isinstance(value, Mapping):
         problems.append(
-            ("scenario", f"is {value!r}; expected a table, or the path of a scenario file")
+            ("scenario", f"is {shown(value)}; expected a table, or the path of a scenario file")
         )
         return {}
     if "seed" in value:
         problems.append(("scenario.seed", "the study has its own; set seeds instead"))
-    base = value.get("file")
-    if isinstance(base, str):
+    file = value.get("file")
+    if isinstance(file, str):
         rest = {key: item for key, item in value.items() if key != "file"}
-        return merged(_base(base, problems), rest)
+        return merged(_base(file, problems), rest)
     return value
 
 
 def _axes(value: Any, key: str, problems: Problems) -> dict[str, Sequence[Any]]:
     """Lists of values by dotted key; tables within are further dots."""
     if not isinstance(value, Mapping):
-        problems.append((key, f"is {value!r}; expected a table of lists"))
+        problems.append((key, f"is {shown(value)}; expected a table of lists"))
         return {}
     axes: dict[str, Sequence[Any]] = {}
     for name, values in value.items():
@@ -114,13 +147,14 @@ def _axes(value: Any, key: str, problems: Problems) -> dict[str, Sequence[Any]]:
         if isinstance(values, Mapping):
             axes |= {f"{name}.{inner}": v for inner, v in _axes(values, dotted, problems).items()}
         elif not isinstance(values, list | tuple):
-            problems.append((dotted, f"is {values!r}; expected a list of values"))
+            problems.append((dotted, f"is {shown(values)}; expected a list of values"))
         elif not values:
             problems.append((dotted, "has no values; expected one or more"))
         else:
-            twice = next((v for n, v in enumerate(values) if v in values[:n]), None)
+            counts = Counter(map(repr, values))
+            twice = next((v for v in values if counts[repr(v)] > 1), None)
             if twice is not None and not key.startswith("paired"):
-                problems.append((dotted, f"holds {twice!r} twice"))
+                problems.append((dotted, f"holds {shown(twice)} twice"))
             axes[name] = values
     return axes
 
@@ -140,7 +174,7 @@ def _block(value: Any, key: str, problems: Problems) -> dict[str, Sequence[Any]]
 def _settings(value: Any, key: str, problems: Problems) -> Iterator[tuple[str, Any]]:
     """The dotted keys of a case; what is picked by name, and its parameters, stay together."""
     if not isinstance(value, Mapping) or not value:
-        problems.append((key, f"is {value!r}; expected a table of scenario keys"))
+        problems.append((key, f"is {shown(value)}; expected a table of scenario keys"))
         return
     for name, item in value.items():
         nameless = name in CHOICES and isinstance(item, Mapping) and "name" not in item
@@ -174,11 +208,11 @@ def _report(study: Study, problems: Problems) -> None:
     """What the report is to show must be something that varies, or a list of measures."""
     for part in ("x", "series"):
         key = study.report.get(part)
-        if key is not None and key not in {*study.varied, "case"}:
+        if key is not None and key not in [*study.varied, "case"]:
             problems.append((f"report.{part}", unknown("axis", str(key), [*study.varied, "case"])))
     asked = study.report.get("measures", [])
     if not isinstance(asked, list | tuple) or not all(isinstance(name, str) for name in asked):
-        problems.append(("report.measures", f"is {asked!r}; expected a list of names"))
+        problems.append(("report.measures", f"is {shown(asked)}; expected a list of names"))
 
 
 def _seeds(value: Any, problems: Problems) -> Sequence[int]:
@@ -188,26 +222,34 @@ def _seeds(value: Any, problems: Problems) -> Sequence[int]:
     else:
         first, count = 0, value
     if _whole(first) and _whole(count) and count > 0:
-        return range(first, first + count)
+        if count <= MOST_RUNS:
+            return range(first, first + count)
+        problems.append(("seeds", f"is {shown(value)}; expected {MOST_RUNS} at most"))
+        return (0,)
     if isinstance(value, list | tuple | range) and value and all(map(_whole, value)):
         if len(set(value)) == len(value):
             return value
-        problems.append(("seeds", f"is {value!r}; expected each seed once"))
+        problems.append(("seeds", f"is {shown(value)}; expected each seed once"))
     else:
         problems.append(
-            ("seeds", f"is {value!r}; expected how many, a list, or a table of first and count")
+            (
+                "seeds",
+                f"is {shown(value)}; expected how many, a list, or a table of first and count",
+            )
         )
     return (0,)
 
 
 def _whole(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < MOST_SEED
 
 
 def _names(value: Any, problems: Problems) -> tuple[str, ...]:
-    if isinstance(value, list | tuple) and all(name in TABLES for name in value):
+    if isinstance(value, list | tuple) and all(
+        isinstance(name, str) and name in TABLES for name in value
+    ):
         return tuple(dict.fromkeys(value))
-    problems.append(("tables", f"is {value!r}; expected a list of {or_list(TABLES)}"))
+    problems.append(("tables", f"is {shown(value)}; expected a list of {or_list(TABLES)}"))
     return ()
 
 
@@ -215,7 +257,7 @@ def _table(data: Mapping[str, Any], key: str, problems: Problems) -> Mapping[str
     value = data.get(key, {})
     if isinstance(value, Mapping):
         return value
-    problems.append((key, f"is {value!r}; expected a table"))
+    problems.append((key, f"is {shown(value)}; expected a table"))
     return {}
 
 
@@ -223,37 +265,5 @@ def _tables(data: Mapping[str, Any], key: str, problems: Problems) -> Sequence[A
     value = data.get(key, [])
     if isinstance(value, list | tuple):
         return value
-    problems.append((key, f"is {value!r}; expected a list of tables, each written [[{key}]]"))
+    problems.append((key, f"is {shown(value)}; expected a list of tables, each written [[{key}]]"))
     return []
-
-
-def _lines(text: str) -> Iterator[tuple[str, int]]:
-    """The line of each dotted key; the n-th table of a list as ``name[n]``. First ones last."""
-    found: list[tuple[str, int]] = []
-    counts: dict[str, int] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), 1):
-        if header := HEADER.match(line):
-            table = re.sub(r"[\"'\s]", "", header[1])
-            if line.lstrip().startswith("[["):
-                n = counts[table] = counts.get(table, -1) + 1
-                table = f"{table}[{n}]"
-            else:  # a table within the last one of a list
-                head, _, rest = table.partition(".")
-                table = f"{head}[{counts[head]}].{rest}" if head in counts else table
-            found.append((table, number))
-        elif entry := ENTRY.match(line):
-            key = re.sub(r"[\"'\s]", "", entry[1])
-            found.append((f"{table}.{key}" if table else key, number))
-    yield from reversed(found)
-
-
-def _place(path: Path, key: str, lines: Mapping[str, int]) -> str:
-    """The file, and the line that sets the key, or the nearest table around it."""
-    within = key
-    while within and within not in lines:
-        unnumbered = re.sub(r"\[\d+\]$", "", within)
-        within = unnumbered if unnumbered != within else within.rpartition(".")[0]
-    if not within and key:
-        within = next((k for k in lines if k.startswith(f"{key}.")), "")
-    return f"{path}:{lines[within]}" if within else f"{path}"

@@ -117,7 +117,7 @@ def test_several_mistakes_are_all_said(tmp_path):
 
 
 def test_options_are_named_as_they_were_given():
-    assert refusal(None, {"search_radius": -1.0}).startswith("--search-radius: search_radius is -1")
+    assert refusal(None, {"search_radius": -1.0}).startswith("--search-radius: is -1.0; expected 0")
     assert refusal(None, {}, ["robot.radius=oops"]).startswith("--set: robot.radius: is 'oops'")
 
 
@@ -129,7 +129,7 @@ def test_missing_file_names_the_near_one(file):
 
 def test_a_folder_or_bytes_are_no_scenario(tmp_path):
     assert "cannot be read" in refusal(tmp_path)
-    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfb\x00")
     assert "not UTF-8" in refusal(tmp_path / "bytes.toml")
 
 
@@ -185,7 +185,7 @@ def test_a_metric_of_the_user_s_own(mine):
     [
         ("{}:whoever_herd", "unknown name in"),
         ("{}:whoever_herd", "did you mean 'whoever_heard'?"),
-        ("{}:number", "is a int; expected a function"),
+        ("{}:number", "is of type int; expected a function"),
         ("{}", "names no object; expected file.py:name"),
         ("nine.py:x", "'nine.py' is not a file"),
     ],
@@ -197,9 +197,11 @@ def test_user_files_that_do_not_serve_say_why(mine, reference, said):
 def test_a_user_file_that_raises_is_named_with_its_line(tmp_path):
     path = tmp_path / "broken.py"
     path.write_text("import math\nmath.sqrt(-1)\n")
-    assert "does not import in line 2: ValueError" in refusal(None, {"protocol": f"{path}:x"})
+    said = refusal(None, {"protocol": f"{path}:x"})
+    assert "does not import in line 2 of broken.py: ValueError" in said
     path.write_text("def x(:\n")
-    assert "does not import in line 1: SyntaxError" in refusal(None, {"protocol": f"{path}:x"})
+    said = refusal(None, {"protocol": f"{path}:x"})
+    assert "does not import in line 1 of broken.py: SyntaxError" in said
 
 
 def test_columns_in_another_order_are_refused_and_not_mixed_up(tmp_path):

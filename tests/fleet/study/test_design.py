@@ -154,7 +154,7 @@ def test_the_base_may_be_a_scenario_or_the_file_of_one(tmp_path):
         ('seeds = "ten"', ":1: seeds: is 'ten'"),
         ('tables = ["round"]', ":1: tables: is ['round']; expected a list of 'rounds' or 'robots'"),
         ("scenario = 3", ":1: scenario: is 3; expected a table, or the path"),
-        ('scenario = "none.toml"', ":1: scenario: none.toml: no such file"),
+        ('scenario = "none.toml"', "none.toml: no such file"),
         ("[scenario]\nrange = -1.0", ":2: scenario.range: range is -1.0 m; expected more than 0"),
         ("[scenario]\nseed = 1", ":2: scenario.seed: the study has its own; set seeds"),
         ("[scenario]\nraduis = 1.0", ":2: scenario.raduis: unknown key 'raduis'"),
@@ -187,7 +187,7 @@ def test_the_base_may_be_a_scenario_or_the_file_of_one(tmp_path):
         ("[report]\nxaxis = 'range'", ":2: report.xaxis: unknown key 'xaxis'"),
         ("[report]\nx = 'range'", ":2: report.x: unknown axis 'range'"),
         ("[report]\nmeasures = 'lifetime'", ":2: report.measures: is 'lifetime'; expected a list"),
-        ("seeds = 99999999", "the study has 99999999 runs; expected 10000000 at most"),
+        ("seeds = 99999999", ":1: seeds: is 99999999; expected 10000000 at most"),
         ("seeds = ", "study.toml: not TOML"),
     ],
 )

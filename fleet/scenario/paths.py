@@ -1,0 +1,45 @@
+"""Paths in a file are relative to the file that names them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from worlds.catalogue import EVENTS, WORLDS
+from worlds.occupancy import OccupancyGrid
+from worlds.shapes import FloatArray
+
+OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
+"""The keys that may hold ``file.py:name``."""
+
+
+@cache
+def path_keys() -> frozenset[str]:
+    """The dotted scenario keys whose text is the path of a file, whatever it is called."""
+    return frozenset(
+        f"{choice}.{parameter.name}"
+        for choice, catalogue in (("world", WORLDS), ("events", EVENTS))
+        for entry in catalogue.values()
+        for parameter in inspect.signature(entry.function, eval_str=True).parameters.values()
+        if parameter.kind is parameter.KEYWORD_ONLY
+        and parameter.annotation in (FloatArray, OccupancyGrid)
+    )
+
+
+def anchored(value: Any, folder: Path, key: str = "") -> Any:
+    """``value``, as it stands at the dotted ``key`` of a file in ``folder``, with its paths from
+    where we are.
+    """
+    if isinstance(value, Mapping):
+        return {
+            name: anchored(item, folder, f"{key}.{name}" if key else name)
+            for name, item in value.items()
+        }
+    if isinstance(value, list):
+        return [anchored(item, folder, key) for item in value]
+    if isinstance(value, str) and (key in path_keys() or (key in OBJECTS and ".py" in value)):
+        return str(folder / value)
+    return value
