@@ -15,32 +15,32 @@ import time
 from pathlib import Path
 
 from fleet.motion.motions import MOTIONS
-from fleet.study import Task, run_tasks
+from fleet.study import Job, run_jobs
+from fleet.study.job import Outcome
 from fleet.study.ledger import reading, writing
-from fleet.study.loading import study_from
+from fleet.study.study_file import study_from
 from fleet.study.sweeping import sweep
-from fleet.study.task import Outcome
 from fleet.study.version import program_version
 
 TURNS = 3  # of which the fastest counts: others may be at work on the machine
 FOLDER = Path(__file__).resolve().parent
 
 
-def nothing(task):
+def nothing(job):
     """A work function that does none."""
-    return {"seed": task.scenario["seed"]}
+    return {"seed": job.scenario["seed"]}
 
 
-def busy(task):
+def busy(job):
     """A work function that takes 25 ms of a core, as a short run does."""
     end = time.process_time() + 0.025
     while time.process_time() < end:
         pass
-    return {"seed": task.scenario["seed"]}
+    return {"seed": job.scenario["seed"]}
 
 
 def idle_tasks(count, function):
-    return [Task.of({"seed": seed}, function=f"study:{function}") for seed in range(count)]
+    return [Job.of({"seed": seed}, function=f"study:{function}") for seed in range(count)]
 
 
 def timed(run):
@@ -63,17 +63,17 @@ class Rate:
 
 
 def overhead():
-    """Time a task beyond what its worker spends in it, from the first task to the last."""
+    """Time a job beyond what its worker spends in it, from the first job to the last."""
     for function, count, named in (
         ("nothing", 3000, "that do nothing"), ("busy", 300, "of 25 ms of a core")
     ):  # fmt: skip
         with tempfile.TemporaryDirectory() as out:
             rate = Rate(warm=10)
-            result = run_tasks(idle_tasks(count, function), out, workers=1, progress=rate)
+            result = run_jobs(idle_tasks(count, function), out, workers=1, progress=rate)
             assert result.counts().done == count
             with reading(Path(out)) as ledger:
                 inside = ledger.seconds() / count
-        print(f"tasks {named}: {1e3 * (1.0 / rate.value() - inside):.2f} ms a task beyond them")
+        print(f"jobs {named}: {1e3 * (1.0 / rate.value() - inside):.2f} ms a job beyond them")
 
 
 def workers():
@@ -97,7 +97,7 @@ def workers():
 
 
 def plan():
-    """100 000 tasks: planned, and gone on with when all but ten are done."""
+    """100 000 jobs: planned, and gone on with when all but ten are done."""
     study = study_from(
         {
             "scenario": {"motion": "straight"},
@@ -108,20 +108,20 @@ def plan():
     with tempfile.TemporaryDirectory() as out:
         folder = Path(out)
         with writing(folder) as ledger:
-            first, _ = timed(lambda: ledger.plan(study.tasks(), program_version()))
+            first, _ = timed(lambda: ledger.plan(study.jobs(), program_version()))
             row = json.dumps({f"figure_{n}": n / 7 for n in range(36)})
             ledger.record(Outcome(key, "done", row, {}, "", 1, 0.02) for key in ledger.todo()[:-10])
 
         def resume():
             with writing(folder) as ledger:
-                ledger.plan(study.tasks(), program_version())
+                ledger.plan(study.jobs(), program_version())
                 return len(ledger.todo()), ledger.counts()
 
         again, (left, counts) = timed(resume)
         assert (left, counts.done) == (10, 99_990)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(
-        f"100 000 tasks: planned in {first:.1f} s, gone on with in {again:.1f} s, {memory:.0f} MiB"
+        f"100 000 jobs: planned in {first:.1f} s, gone on with in {again:.1f} s, {memory:.0f} MiB"
     )
 
 

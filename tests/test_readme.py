@@ -8,7 +8,7 @@ from pathlib import Path
 import fleet
 from fleet.cli import COMMANDS
 from fleet.scenario.loading import load_scenario
-from fleet.study.loading import load_study
+from fleet.study.study_file import load_study
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -36,7 +36,7 @@ def test_the_scenario_loads_and_runs(tmp_path):
 def test_the_study_loads(tmp_path):
     path = tmp_path / "study.toml"
     path.write_text(block(README, "toml", "# study.toml"), encoding="utf-8")
-    assert len(list(load_study(path).tasks())) == 3 * 3 * 30
+    assert len(list(load_study(path).jobs())) == 3 * 3 * 30
 
 
 def test_a_run_from_python(capsys):

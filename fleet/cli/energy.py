@@ -24,11 +24,11 @@ def command(out: Path, quick: bool, seed: int, workers: int | None) -> None:
     with figures (PNG, SVG) and their numbers (CSV) in OUT/figures. Interrupted and run again,
     it goes on where it was.
     """
-    from fleet.study.energy.campaign import FULL, QUICK
-    from fleet.study.energy.running import examine
+    from fleet.experiments.energy.energy_study import energy_study
+    from fleet.experiments.energy.settings import FULL, QUICK
 
     with resumable():
-        results, page = examine(
+        results, page = energy_study(
             out, progress, size=QUICK if quick else FULL, seed=seed, workers=workers, say=say,
             command=this_command(),
         )  # fmt: skip

@@ -25,12 +25,12 @@ def command(
     Writes OUT/report.html, with figures (PNG, SVG) and tables (CSV) beside it. Interrupted
     and run again, it goes on where it was.
     """
-    from fleet.study.paper.campaign import NETWORKS, NETWORKS_QUICK
-    from fleet.study.paper.running import reproduce
+    from fleet.experiments.paper.cases import NETWORKS, NETWORKS_QUICK
+    from fleet.experiments.paper.paper_campaign import paper_campaign
 
     with resumable():
         with progress("paper") as show:
-            result, page = reproduce(
+            result, page = paper_campaign(
                 out, networks=NETWORKS_QUICK if quick else NETWORKS,
                 physics=motion == "physics", workers=workers, scheduler=scheduler,
                 progress=show, say=say, command=this_command(),

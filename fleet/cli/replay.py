@@ -29,7 +29,7 @@ def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool)
     from fleet.cli.resuming import say
     from fleet.cli.summary import print_summary
     from fleet.observer import Observer
-    from fleet.study.replaying import kept_run
+    from fleet.study.kept import kept_run
     from fleet.study.version import program_version
 
     with bad_input_exits():

@@ -16,7 +16,7 @@ def command(folder: Path) -> None:
 
     The figures are beside it as SVG, and what they show as CSV, in FOLDER/report.
     """
-    from fleet.study.report.writing import write_report
+    from fleet.study.report.study_report import write_report
 
     with bad_input_exits():
         click.echo(write_report(folder))

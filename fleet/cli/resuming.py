@@ -29,7 +29,7 @@ MOST_NAMED = 10  # reasons that are named
 @contextmanager
 def resumable() -> Iterator[None]:
     """Exit with what is kept and how to go on, when a study ends before its end."""
-    from fleet.study.errors import BrokenOff, Interrupted
+    from fleet.study.endings import BrokenOff, Interrupted
 
     with bad_input_exits():
         try:

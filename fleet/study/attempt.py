@@ -1,4 +1,4 @@
-"""Running one task where it is: find the work function, call it, and write down what came."""
+"""Running one job where it is: find the work function, call it, and write down what came."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from fleet.study.task import Outcome, Task
+from fleet.study.job import Job, Outcome
 
 
-def attempt(task: Task) -> Outcome:
-    """The outcome of a task. What the work function raises is part of the outcome."""
+def attempt(job: Job) -> Outcome:
+    """The outcome of a job. What the work function raises is part of the outcome."""
     started = time.perf_counter()
     try:
-        row = dict(work_function(task.function)(task))
+        row = dict(work_function(job.function)(job))
         tables = {name: pack(rows) for name, rows in row.pop("tables", {}).items() if rows}
         text = json.dumps(row, default=_as_plain)
-    except Exception:  # noqa: BLE001  # whatever a task raises is recorded, and the study goes on
+    except Exception:  # noqa: BLE001  # whatever a job raises is recorded, and the study goes on
         seconds = time.perf_counter() - started
-        return Outcome(task.key, "raised", "", {}, traceback.format_exc(limit=-12), 1, seconds)
-    return Outcome(task.key, "done", text, tables, "", 1, time.perf_counter() - started)
+        return Outcome(job.key, "raised", "", {}, traceback.format_exc(limit=-12), 1, seconds)
+    return Outcome(job.key, "done", text, tables, "", 1, time.perf_counter() - started)
 
 
 @cache
-def work_function(path: str) -> Callable[[Task], Mapping[str, Any]]:
+def work_function(path: str) -> Callable[[Job], Mapping[str, Any]]:
     """The function that ``module:name`` means.
 
     Raises:
@@ -37,7 +37,7 @@ def work_function(path: str) -> Callable[[Task], Mapping[str, Any]]:
     module, colon, name = path.partition(":")
     if not (module and colon and name):
         raise ValueError(f"work function is {path!r}; expected module:name")
-    found: Callable[[Task], Mapping[str, Any]] = getattr(import_module(module), name)
+    found: Callable[[Job], Mapping[str, Any]] = getattr(import_module(module), name)
     return found
 
 

@@ -1,7 +1,7 @@
-"""The study on a Dask cluster. Dask carries tasks and results; it does not run them.
+"""The study on a Dask cluster. Dask carries jobs and results; it does not run them.
 
-Each thread of a Dask worker keeps a worker process of ours, as the local engine does: a task
-that crashes takes that process down and nothing else, and is blamed alone. Short tasks travel
+Each thread of a Dask worker keeps a worker process of ours, as the local executor does: a job
+that crashes takes that process down and nothing else, and is blamed alone. Short jobs travel
 in bundles. The scheduler's port runs whatever code it is sent: keep it on the loopback, or use
 ``tls://``.
 """
@@ -22,29 +22,29 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fleet.scenario.errors import bad
-from fleet.study.errors import BrokenOff
+from fleet.study.endings import BrokenOff
+from fleet.study.job import Job, Outcome
 from fleet.study.local import HEARTBEAT, Take, killed
-from fleet.study.task import Outcome, Task
 from fleet.study.version import program_version
 from fleet.study.worker import Worker
 
-BUNDLE_SECONDS = 0.5  # how long a bundle of short tasks should take
+BUNDLE_SECONDS = 0.5  # how long a bundle of short jobs should take
 MOST_BUNDLED = 20
 AHEAD = 2  # bundles for each thread: one at work, one waiting
 PATIENCE = 120.0  # [s] without any Dask worker
 ANSWER = 10.0  # [s] in which the scheduler has to answer
 
-Bundle = tuple[Task, ...]
+Bundle = tuple[Job, ...]
 
 
-class Sent(NamedTuple):
+class Dispatched(NamedTuple):
     """A bundle that is with the cluster."""
 
     future: Any
     bundle: Bundle
 
 
-class ClusterEngine:
+class ClusterExecutor:
     """The threads of all workers of a Dask scheduler, as they come and go.
 
     Raises:
@@ -64,13 +64,13 @@ class ClusterEngine:
             self._client = connect(scheduler, timeout=ANSWER, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise BrokenOff(f"no Dask scheduler answers at {scheduler!r} ({error})") from error
-        self._sent: dict[str, Sent] = {}
+        self._sent: dict[str, Dispatched] = {}
         self._again: deque[Bundle] = deque()
         self._numbers = count()
-        self._seconds = BUNDLE_SECONDS  # of a task, in the mean
+        self._seconds = BUNDLE_SECONDS  # of a job, in the mean
 
     def run(self, take: Take) -> Iterator[list[Outcome]]:
-        """See :class:`fleet.study.local.Engine`."""
+        """See :class:`fleet.study.local.Executor`."""
         try:
             yield from self._run(take)
         except BrokenOff:
@@ -101,7 +101,7 @@ class ClusterEngine:
             yield self._collect()
 
     def _threads(self) -> int:
-        """How many tasks the cluster can run at a time."""
+        """How many jobs the cluster can run at a time."""
         if self._client.status != "running":
             raise BrokenOff(f"the Dask scheduler is lost ({self._client.status})")
         try:
@@ -129,7 +129,7 @@ class ClusterEngine:
             key=keys, retries=0, pure=False,
         )  # fmt: skip
         self._sent |= {
-            key: Sent(future, bundle)
+            key: Dispatched(future, bundle)
             for key, future, bundle in zip(keys, futures, bundles, strict=True)
         }
 
@@ -181,11 +181,11 @@ class ClusterEngine:
         return answer
 
     def _died(self, bundle: Bundle, error: BaseException) -> list[Outcome]:
-        """A bundle whose Dask worker died under it: its tasks go again, each by itself."""
+        """A bundle whose Dask worker died under it: its jobs go again, each by itself."""
         if type(error).__name__ != "KilledWorker":
-            raise BrokenOff(f"the Dask workers cannot run tasks: {type(error).__name__}: {error}")
+            raise BrokenOff(f"the Dask workers cannot run jobs: {type(error).__name__}: {error}")
         if len(bundle) > 1:
-            self._again.extend((task,) for task in bundle)
+            self._again.extend((job,) for job in bundle)
             return []
         return [killed(bundle[0], "the Dask worker died")]
 
@@ -202,18 +202,18 @@ def work(bundle: Bundle, *, version: str, folder: str) -> list[Outcome] | str:
         )
     # Dask's workers may not have children, unless configured so; ours end with their parent.
     multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
-    return [_run_apart(task, folder) for task in bundle]
+    return [_run_apart(job, folder) for job in bundle]
 
 
-def _run_apart(task: Task, folder: str) -> Outcome:
-    """Run a task in this thread's worker process, a new one if the last one died."""
+def _run_apart(job: Job, folder: str) -> Outcome:
+    """Run a job in this thread's worker process, a new one if the last one died."""
     if getattr(_mine, "folder", None) != folder:
         _mine.worker, _mine.folder = Worker(folder), folder
     worker: Worker = _mine.worker
-    worker.give(task)
+    worker.give(job)
     outcome = worker.answer()
     if outcome is None:
-        outcome = killed(task, worker.death())
+        outcome = killed(job, worker.death())
         worker.close()
         _mine.folder = None
     return outcome

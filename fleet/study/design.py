@@ -13,7 +13,7 @@ from fleet.scenario.choices import check
 from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import merged, nested, scenario_from
 from fleet.scenario.model import Scenario
-from fleet.study.task import Task
+from fleet.study.job import Job
 
 MOST_PROBLEMS = 20  # said at once
 
@@ -39,8 +39,8 @@ class Study:
     """Every combination of the values of the axes, of the paired axes and of the cases.
 
     Each is run once with every seed, and one seed gives the same network and the same events
-    to all of them: runs of one seed are pairs. Use :func:`fleet.study.loading.load_study` or
-    :func:`fleet.study.loading.study_from`, which check all of it.
+    to all of them: runs of one seed are pairs. Use :func:`fleet.study.study_file.load_study` or
+    :func:`fleet.study.study_file.study_from`, which check all of it.
     """
 
     scenario: Mapping[str, Any] = field(default_factory=dict)  # keys as in a scenario file
@@ -48,7 +48,7 @@ class Study:
     paired: Sequence[Mapping[str, Sequence[Any]]] = ()  # the i-th values go together
     cases: Sequence[Mapping[str, Any]] = ()  # dotted keys and values; "label" names a case
     seeds: Sequence[int] = (0,)
-    tables: tuple[str, ...] = ()  # names in fleet.study.recording.TABLES
+    tables: tuple[str, ...] = ()  # names in fleet.study.side_tables.TABLES
     title: str = ""
     report: Mapping[str, Any] = field(default_factory=dict)  # see fleet.study.report
 
@@ -102,7 +102,7 @@ class Study:
             ) from error
         return scenario
 
-    def tasks(self) -> Iterator[Task]:
+    def jobs(self) -> Iterator[Job]:
         """All runs: seed by seed, so that a study that is stopped has something of every cell.
 
         Raises:
@@ -110,7 +110,7 @@ class Study:
         """
         for seed in self.seeds:
             for cell in self.resolved:
-                yield Task.of(
+                yield Job.of(
                     cell.scenario | {"seed": seed},
                     cell=cell.name,
                     labels=cell.labels | {"seed": seed},

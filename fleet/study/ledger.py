@@ -1,7 +1,7 @@
 """The one record of what has been done: a SQLite file with one writer and any number of readers.
 
-``task`` holds what was ever asked for, ``run`` what became of it, ``side`` the tables that came
-with it, and ``plan`` which tasks the study as it stands is made of, in order. A row of ``run``
+``job`` holds what was ever asked for, ``run`` what became of it, ``side`` the tables that came
+with it, and ``plan`` which jobs the study as it stands is made of, in order. A row of ``run``
 is written once, in a transaction that is on the disk before anybody is told of it.
 """
 
@@ -15,14 +15,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fleet.scenario.errors import BadInput, bad
-from fleet.study.errors import BrokenOff
+from fleet.study.endings import BrokenOff
+from fleet.study.job import Job, Outcome, Status, canonical
 from fleet.study.lock import sole
-from fleet.study.task import Outcome, Status, Task, canonical
 
 NAME = "ledger.sqlite"
 FORMAT = 1
 SCHEMA = """
-CREATE TABLE IF NOT EXISTS task(
+CREATE TABLE IF NOT EXISTS job(
     key TEXT PRIMARY KEY, scenario TEXT NOT NULL, tables TEXT NOT NULL, function TEXT NOT NULL,
     version TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS plan(
@@ -51,7 +51,7 @@ class Counts(NamedTuple):
 
 
 class Failure(NamedTuple):
-    """A task that came to nothing."""
+    """A job that came to nothing."""
 
     key: str
     cell: str
@@ -86,10 +86,10 @@ class Ledger:
         return {n: json.loads(v) for n, v in self._database.execute("SELECT * FROM meta")}
 
     def failures(self) -> list[Failure]:
-        """The planned tasks that came to nothing, in the order of the plan."""
+        """The planned jobs that came to nothing, in the order of the plan."""
         found = self._database.execute(
             "SELECT key, min(cell), status, error, scenario FROM plan"
-            " JOIN run USING (key) JOIN task USING (key)"
+            " JOIN run USING (key) JOIN job USING (key)"
             " WHERE status <> 'done' GROUP BY key ORDER BY min(position)"
         )
         return [
@@ -104,7 +104,7 @@ class Ledger:
         """
         found = self._database.execute(
             "SELECT cell, labels, row, key, version, scenario FROM plan"
-            " JOIN run USING (key) JOIN task USING (key) WHERE status = 'done' ORDER BY position"
+            " JOIN run USING (key) JOIN job USING (key) WHERE status = 'done' ORDER BY position"
         )
         for cell, labels, row, key, version, scenario in found:
             yield {
@@ -138,25 +138,25 @@ class Ledger:
         """The keys, in the plan or not, that begin with ``prefix``; ten at most."""
         end = prefix + "g"  # after every hexadecimal digit
         found = self._database.execute(
-            "SELECT key FROM task WHERE key >= ? AND key < ? ORDER BY key LIMIT 10", (prefix, end)
+            "SELECT key FROM job WHERE key >= ? AND key < ? ORDER BY key LIMIT 10", (prefix, end)
         )
         return [key for (key,) in found]
 
     def keys(self) -> list[str]:
         """All keys, in the plan or not."""
-        return [key for (key,) in self._database.execute("SELECT key FROM task ORDER BY key")]
+        return [key for (key,) in self._database.execute("SELECT key FROM job ORDER BY key")]
 
-    def task(self, key: str) -> Task:
+    def job(self, key: str) -> Job:
         """What is run under a key."""
         scenario, tables, function = self._database.execute(
-            "SELECT scenario, tables, function FROM task WHERE key = ?", (key,)
+            "SELECT scenario, tables, function FROM job WHERE key = ?", (key,)
         ).fetchone()
-        return Task(key, json.loads(scenario), tables=tuple(json.loads(tables)), function=function)
+        return Job(key, json.loads(scenario), tables=tuple(json.loads(tables)), function=function)
 
     def version(self, key: str) -> str:
         """The program version that a key belongs to."""
         (version,) = self._database.execute(
-            "SELECT version FROM task WHERE key = ?", (key,)
+            "SELECT version FROM job WHERE key = ?", (key,)
         ).fetchone()
         return str(version)
 
@@ -172,40 +172,40 @@ class Ledger:
 class OpenLedger(Ledger):
     """The record of one folder, written to."""
 
-    def plan(self, tasks: Iterable[Task], version: str) -> bool:
-        """Make ``tasks`` what the study is made of; whether that changes anything.
+    def plan(self, jobs: Iterable[Job], version: str) -> bool:
+        """Make ``jobs`` what the study is made of; whether that changes anything.
 
-        What was done before is kept. A task that comes twice in one cell counts once.
+        What was done before is kept. A job that comes twice in one cell counts once.
         """
         database, before = self._database, self._database.total_changes
         with self._transaction():
-            for task in self._from_first_change(_distinct(tasks)):
+            for job in self._from_first_change(_distinct(jobs)):
                 database.execute(
-                    "INSERT OR IGNORE INTO task VALUES (?, ?, ?, ?, ?)",
+                    "INSERT OR IGNORE INTO job VALUES (?, ?, ?, ?, ?)",
                     (
-                        task.key, canonical(task.scenario), canonical(task.tables),
-                        task.function, version,
+                        job.key, canonical(job.scenario), canonical(job.tables),
+                        job.function, version,
                     ),
                 )  # fmt: skip
                 database.execute(
                     "INSERT INTO plan(key, cell, labels) VALUES (?, ?, ?)",
-                    (task.key, task.cell, json.dumps(task.labels)),
+                    (job.key, job.cell, json.dumps(job.labels)),
                 )
         return database.total_changes > before
 
-    def _from_first_change(self, tasks: Iterable[Task]) -> Iterator[Task]:
-        """The tasks from the first one that is not in its place; the plan is cut off there."""
+    def _from_first_change(self, jobs: Iterable[Job]) -> Iterator[Job]:
+        """The jobs from the first one that is not in its place; the plan is cut off there."""
         planned = self._database.execute("SELECT key, cell, labels FROM plan ORDER BY position")
         same, unchanged = 0, True
-        for task in tasks:
-            place = (task.key, task.cell, json.dumps(task.labels))
+        for job in jobs:
+            place = (job.key, job.cell, json.dumps(job.labels))
             if unchanged and planned.fetchone() == place:
                 same += 1
                 continue
             if unchanged:
                 unchanged = False
                 self._cut(same)
-            yield task
+            yield job
         if unchanged:
             self._cut(same)
 
@@ -223,7 +223,7 @@ class OpenLedger(Ledger):
     def aside(self, version: str) -> tuple[int, int]:
         """Runs that are done but not in the plan: of this program version, and of others."""
         same, others = self._database.execute(
-            "SELECT total(version = ?), total(version <> ?) FROM run JOIN task USING (key)"
+            "SELECT total(version = ?), total(version <> ?) FROM run JOIN job USING (key)"
             " WHERE status = 'done' AND key NOT IN (SELECT key FROM plan)",
             (version, version),
         ).fetchone()
@@ -333,12 +333,12 @@ def _close(database: sqlite3.Connection) -> None:
     database.close()
 
 
-def _distinct(tasks: Iterable[Task]) -> Iterator[Task]:
+def _distinct(jobs: Iterable[Job]) -> Iterator[Job]:
     seen = set()
-    for task in tasks:
-        if (task.key, task.cell) not in seen:
-            seen.add((task.key, task.cell))
-            yield task
+    for job in jobs:
+        if (job.key, job.cell) not in seen:
+            seen.add((job.key, job.cell))
+            yield job
 
 
 def _given(labels: dict[str, Any]) -> dict[str, Any]:

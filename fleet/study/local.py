@@ -1,4 +1,4 @@
-"""The study on one machine: a pool of worker processes, one task in each."""
+"""The study on one machine: a pool of worker processes, one job in each."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
-from fleet.study.errors import BrokenOff
-from fleet.study.task import Outcome, Task
+from fleet.study.endings import BrokenOff
+from fleet.study.job import Job, Outcome
 from fleet.study.worker import Worker
 
 HEARTBEAT = 0.1  # [s] between looks at whether to stop
 
-Take: TypeAlias = Callable[[], Task | None]
+Take: TypeAlias = Callable[[], Job | None]
 
 
-class Engine(Protocol):
-    """Runs tasks somewhere else, each apart from all others."""
+class Executor(Protocol):
+    """Runs jobs somewhere else, each apart from all others."""
 
     def run(self, take: Take) -> Iterator[list[Outcome]]:
         """Outcomes as they come, several at a time; an empty list now and then while none do.
 
-        ``take`` gives the next task, as there is room for one; None: there is none at the
-        moment. The end is when there is none and nothing is under way. A task whose worker
+        ``take`` gives the next job, as there is room for one; None: there is none at the
+        moment. The end is when there is none and nothing is under way. A job whose worker
         died is an outcome like others: "killed".
 
         Raises:
-            BrokenOff: what runs the tasks is gone.
+            BrokenOff: what runs the jobs is gone.
         """
 
     def close(self) -> None:
         """Let go of everything, at once."""
 
 
-class LocalEngine:
-    """As many worker processes as asked for, started as tasks come."""
+class LocalExecutor:
+    """As many worker processes as asked for, started as jobs come."""
 
     def __init__(self, workers: int | None = None) -> None:
         self.workers = workers or usable_cores()
@@ -45,7 +45,7 @@ class LocalEngine:
         self._idle: list[Worker] = []
 
     def run(self, take: Take) -> Iterator[list[Outcome]]:
-        """See :class:`Engine`."""
+        """See :class:`Executor`."""
         self._feed(take)
         while self._busy:
             ready = wait(list(self._busy), HEARTBEAT)
@@ -62,9 +62,9 @@ class LocalEngine:
         self._idle.clear()
 
     def _feed(self, take: Take) -> None:
-        while len(self._busy) < self.workers and (task := take()):
+        while len(self._busy) < self.workers and (job := take()):
             worker = self._idle.pop() if self._idle else self._start()
-            worker.give(task)
+            worker.give(job)
             self._busy[worker.connection] = worker
 
     def _start(self) -> Worker:
@@ -74,19 +74,19 @@ class LocalEngine:
             raise BrokenOff(f"no worker process can be started: {error!r}") from error
 
     def _outcome(self, worker: Worker) -> Outcome:
-        task, outcome = worker.task, worker.answer()
+        job, outcome = worker.job, worker.answer()
         if outcome is not None:
             self._idle.append(worker)
             return outcome
-        assert task is not None
+        assert job is not None
         cause = worker.death()
         worker.close()
-        return killed(task, cause)
+        return killed(job, cause)
 
 
-def killed(task: Task, cause: str) -> Outcome:
-    """The outcome of a task that its worker did not survive."""
-    return Outcome(task.key, "killed", "", {}, cause, 1, 0.0)
+def killed(job: Job, cause: str) -> Outcome:
+    """The outcome of a job that its worker did not survive."""
+    return Outcome(job.key, "killed", "", {}, cause, 1, 0.0)
 
 
 def usable_cores() -> int:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from fleet.study.errors import busy
+from fleet.study.endings import busy
 
 if sys.platform == "win32":
     import msvcrt

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from fleet.scenario.errors import bad, unknown
 from fleet.study.ledger import Counts, Failure, reading
-from fleet.study.tables import (
+from fleet.study.parquet import (
     parquet_pieces,
     runs_table,
     side_table,

@@ -8,11 +8,11 @@ import time
 from types import FrameType
 from typing import Any
 
-GRACE = 0.5  # [s] that tasks under way are given to end
+GRACE = 0.5  # [s] that jobs under way are given to end
 
 
 class Stop:
-    """Ctrl-C and SIGTERM as something to look at, between tasks, in the main thread."""
+    """Ctrl-C and SIGTERM as something to look at, between jobs, in the main thread."""
 
     def __init__(self) -> None:
         self.signal = 0  # the number of the one that came
@@ -35,5 +35,5 @@ class Stop:
         self._deadline = 0.0 if again else time.monotonic() + GRACE
 
     def over(self) -> bool:
-        """Whether tasks under way have had their time."""
+        """Whether jobs under way have had their time."""
         return self.signal != 0 and time.monotonic() >= self._deadline

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from fleet.study.design import Study
-from fleet.study.loading import load_study, study_from
 from fleet.study.result import StudyResult
-from fleet.study.running import Progress, Say, run_tasks, silent
+from fleet.study.runner import Progress, Say, run_jobs, silent
+from fleet.study.study_file import load_study, study_from
 
 
 def sweep(
@@ -27,7 +27,7 @@ def sweep(
     """Run every combination of a study with every seed; go on where the folder stands.
 
     ``study`` is a TOML file, tables as one would have, or a :class:`Study`. The other
-    parameters are those of :func:`fleet.study.run_tasks`; ``command`` is what the report says
+    parameters are those of :func:`fleet.study.run_jobs`; ``command`` is what the report says
     was called.
 
     Raises:
@@ -36,8 +36,8 @@ def sweep(
         Interrupted: Ctrl-C or SIGTERM; it is a KeyboardInterrupt. What is done is kept.
     """
     described = described_by(study)
-    return run_tasks(
-        described.tasks(),
+    return run_jobs(
+        described.jobs(),
         out,
         workers=workers,
         scheduler=scheduler,

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import fleet
 
-BESIDE = ("cli", "replay", "study")  # in fleet/: what watches runs, and decides nothing in them
+BESIDE = ("cli", "experiments", "replay", "study")
+"""In ``fleet``: what watches runs, and decides nothing in them."""
 
 
 @cache
@@ -18,7 +19,8 @@ def program_version() -> str:
     """The release and the first digits of a hash of its sources: ``0.1.0+5c1f09ab``.
 
     The hash covers ``protocols``, ``worlds`` and what ``fleet`` holds besides the command line,
-    the replay and the studies. An edit of a protocol is another version of the program.
+    the replay, the studies and the experiments. An edit of a protocol is another version of the
+    program.
     """
     root = Path(fleet.__file__).resolve().parent
     digest = hashlib.sha256()

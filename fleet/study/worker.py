@@ -1,4 +1,4 @@
-"""Worker processes: each runs one task at a time, and takes nobody along when it dies."""
+"""Worker processes: each runs one job at a time, and takes nobody along when it dies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import Any
 
 from fleet.study.attempt import attempt
-from fleet.study.task import Outcome, Task
+from fleet.study.job import Job, Outcome
 
 FORKSERVER = "forkserver" in multiprocessing.get_all_start_methods()
 CONTEXT: Any = multiprocessing.get_context("forkserver" if FORKSERVER else "spawn")
@@ -30,35 +30,35 @@ Connection = multiprocessing.connection.Connection
 
 
 class Worker:
-    """A process that runs tasks, one after the other, until it is closed or dies.
+    """A process that runs jobs, one after the other, until it is closed or dies.
 
     It ignores Ctrl-C, which is its parent's business, and dies with its parent. Everything it
-    needs of a task it gets through a pipe; a crash is blamed on the one task that it had.
+    needs of a job it gets through a pipe; a crash is blamed on the one job that it had.
     ``folder`` is where the user's files are named from.
     """
 
     def __init__(self, folder: str) -> None:
         self.connection, theirs = CONTEXT.Pipe()
-        self.task: Task | None = None  # what it is at work on
+        self.job: Job | None = None  # what it is at work on
         with _bare_start():
             self._process = CONTEXT.Process(target=serve, args=(theirs, folder))
             self._process.daemon = True
             self._process.start()
         theirs.close()
 
-    def give(self, task: Task) -> None:
-        """Start on a task. If the worker is dead, :meth:`answer` will say so."""
-        self.task = task
+    def give(self, job: Job) -> None:
+        """Start on a job. If the worker is dead, :meth:`answer` will say so."""
+        self.job = job
         with suppress(OSError):  # a dead worker's pipe
-            self.connection.send(task)
+            self.connection.send(job)
 
     def answer(self) -> Outcome | None:
-        """The outcome of the task, waited for; None: the worker died of it."""
+        """The outcome of the job, waited for; None: the worker died of it."""
         try:
             outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
             return None
-        self.task = None
+        self.job = None
         return outcome
 
     def death(self) -> str:
@@ -81,7 +81,7 @@ class Worker:
 
 
 def serve(connection: Connection, folder: str) -> None:
-    """What a worker process does: take a task, run it, answer; to the end of the pipe."""
+    """What a worker process does: take a job, run it, answer; to the end of the pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     _die_with_parent()

@@ -24,7 +24,7 @@ ROBOTS_AT = np.linspace(0.0, 100.0, 101)  # [%] of the robots, for the distribut
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class Coordinates:
     """Where in a study an estimate belongs: values of the facets, the series and x."""
 
     facet: tuple[Any, ...]
@@ -36,7 +36,7 @@ class Cell:
 class Mean:
     """The mean of a measure over a cell's runs."""
 
-    cell: Cell
+    cell: Coordinates
     measure: str
     runs: int
     estimate: Interval
@@ -46,7 +46,7 @@ class Mean:
 class Contrast:
     """How a measure differs from the baseline's, over runs of the same seed."""
 
-    cell: Cell
+    cell: Coordinates
     measure: str
     difference: Difference
 
@@ -55,7 +55,7 @@ class Contrast:
 class Curve:
     """How long the networks of a cell live."""
 
-    cell: Cell
+    cell: Coordinates
     runs: int
     cut: int  # runs that were still going at their limit of rounds
     curve: Survival
@@ -65,7 +65,7 @@ class Curve:
 class Energies:
     """The energy that the robots of a cell have left [J], least first, at ROBOTS_AT (101,)."""
 
-    cell: Cell
+    cell: Coordinates
     robots: int
     left: NDArray[np.float64]
 
@@ -86,7 +86,7 @@ def contrasts(runs: Runs, layout: Layout, measures: Sequence[str]) -> list[Contr
     groups = dict(_cells(runs, layout))
     found = []
     for cell, group in groups.items():
-        base = groups.get(Cell(cell.facet, layout.baseline, cell.x))
+        base = groups.get(Coordinates(cell.facet, layout.baseline, cell.x))
         if base is None or cell.series == layout.baseline:
             continue
         _, mine, theirs = np.intersect1d(group["seed"], base["seed"], return_indices=True)
@@ -125,13 +125,13 @@ def energies(robots: Runs, layout: Layout) -> list[Energies]:
     ]
 
 
-def _cells(runs: Runs, layout: Layout) -> Iterator[tuple[Cell, Runs]]:
+def _cells(runs: Runs, layout: Layout) -> Iterator[tuple[Coordinates, Runs]]:
     names = [*layout.facets, *(name for name in (layout.series, layout.x) if name is not None)]
     for values, group in runs.groups(names):
         rest = list(values[len(layout.facets) :])
         series = rest.pop(0) if layout.series is not None else None
         x = rest.pop(0) if layout.x is not None else None
-        yield Cell(values[: len(layout.facets)], series, x), group
+        yield Coordinates(values[: len(layout.facets)], series, x), group
 
 
 def _finite(column: NDArray[Any]) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fleet.study import Task
+from fleet.study import Job
 
 
 @pytest.fixture(autouse=True)
@@ -22,11 +22,11 @@ def log(tmp_path):
 
 @pytest.fixture
 def make_tasks(log):
-    """Make ``count`` tasks of a work function in deeds.py."""
+    """Make ``count`` jobs of a work function in deeds.py."""
 
     def make(count, function="note", **scenario):
         return [
-            Task.of(
+            Job.of(
                 {"n": n, "log": str(log), **scenario},
                 cell=f"n={n}",
                 labels={"label": n % 3},

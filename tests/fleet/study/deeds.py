@@ -9,30 +9,30 @@ import time
 from pathlib import Path
 
 
-def note(task):
+def note(job):
     """Leave a trace of the call, and give a row."""
-    log = task.scenario.get("log")
+    log = job.scenario.get("log")
     if log:
         with Path(log).open("a") as file:
-            file.write(f"{task.scenario['n']} {os.getpid()}\n")
-    return {"n": task.scenario["n"], "square": task.scenario["n"] ** 2, "pid": os.getpid()}
+            file.write(f"{job.scenario['n']} {os.getpid()}\n")
+    return {"n": job.scenario["n"], "square": job.scenario["n"] ** 2, "pid": os.getpid()}
 
 
-def slow(task):
-    time.sleep(task.scenario.get("seconds", 0.05))
-    return note(task)
+def slow(job):
+    time.sleep(job.scenario.get("seconds", 0.05))
+    return note(job)
 
 
-def deadly(task):
+def deadly(job):
     """Do what the scenario's ``deed`` says, at the ``n`` that it says; else :func:`note`."""
-    if task.scenario["n"] != task.scenario["victim"]:
-        return note(task)
-    if "once" in task.scenario:
-        marker = Path(task.scenario["once"])
+    if job.scenario["n"] != job.scenario["victim"]:
+        return note(job)
+    if "once" in job.scenario:
+        marker = Path(job.scenario["once"])
         if marker.exists():
-            return note(task)
+            return note(job)
         marker.touch()
-    DEEDS[task.scenario["deed"]]()
+    DEEDS[job.scenario["deed"]]()
     raise AssertionError("it should be dead")
 
 
@@ -57,17 +57,17 @@ DEEDS = {
 }
 
 
-def with_tables(task):
-    n = task.scenario["n"]
+def with_tables(job):
+    n = job.scenario["n"]
     parts = [{"part": k, "size": float(k)} for k in range(n)]
-    return note(task) | {"by_kind": {"route-face": n}, "tables": {"parts": parts}}
+    return note(job) | {"by_kind": {"route-face": n}, "tables": {"parts": parts}}
 
 
-def unspeakable(task):
+def unspeakable(job):
     return {"n": object()}
 
 
-def numbers(task):
+def numbers(job):
     import numpy as np
 
-    return {"n": np.int64(task.scenario["n"]), "x": np.float64(0.1), "list": np.arange(3)}
+    return {"n": np.int64(job.scenario["n"]), "x": np.float64(0.1), "list": np.arange(3)}

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from fleet.study import BrokenOff, StudyResult, run_tasks
+from fleet.study import BrokenOff, StudyResult, run_jobs
 from fleet.study.sweeping import sweep
 
 pytest.importorskip("distributed", reason="dask.distributed is not installed: the extra 'cluster'")
@@ -93,9 +93,9 @@ def test_a_cluster_finds_what_one_machine_finds_to_the_bit(cluster, tmp_path):
 
 
 def test_each_task_is_run_once_and_the_study_goes_on_here(cluster, tmp_path, make_tasks, calls):
-    run_tasks(make_tasks(40), tmp_path / "out", scheduler=cluster.address)
+    run_jobs(make_tasks(40), tmp_path / "out", scheduler=cluster.address)
     assert sorted(calls()) == list(range(40))
-    run_tasks(make_tasks(60), tmp_path / "out", workers=2)
+    run_jobs(make_tasks(60), tmp_path / "out", workers=2)
     assert sorted(calls()) == list(range(60))
 
 
@@ -111,10 +111,10 @@ def test_each_task_is_run_once_and_the_study_goes_on_here(cluster, tmp_path, mak
 def test_a_task_that_kills_is_blamed_alone(
     cluster, tmp_path, make_tasks, calls, deed, status, said
 ):
-    tasks = make_tasks(25, "deadly", victim=4, deed=deed)
-    result = run_tasks(tasks, tmp_path / "out", scheduler=cluster.address)
+    jobs = make_tasks(25, "deadly", victim=4, deed=deed)
+    result = run_jobs(jobs, tmp_path / "out", scheduler=cluster.address)
     (failure,) = result.failures()
-    assert (failure.key, failure.status) == (tasks[4].key, status)
+    assert (failure.key, failure.status) == (jobs[4].key, status)
     assert said in failure.error
     assert result.counts() == (25, 24, 1)
     assert sorted(calls()) == [n for n in range(25) if n != 4]
@@ -130,7 +130,7 @@ def test_a_lost_worker_costs_nothing(own_cluster, tmp_path, make_tasks, log):
             killed.append(doomed.pid)
             os.killpg(doomed.pid, signal.SIGKILL)
 
-    result = run_tasks(
+    result = run_jobs(
         make_tasks(60, "slow"), tmp_path / "out", scheduler=own_cluster.address, progress=kill
     )
     assert killed
@@ -146,27 +146,27 @@ def test_a_lost_scheduler_is_said_and_nothing_done_is_lost(own_cluster, tmp_path
             own_cluster.scheduler.kill()
 
     with pytest.raises(BrokenOff, match="the Dask scheduler is lost"):
-        run_tasks(
+        run_jobs(
             make_tasks(200, "slow"), tmp_path / "out", scheduler=own_cluster.address, progress=kill
         )
     assert StudyResult(tmp_path / "out").counts().done >= 10
-    assert run_tasks(make_tasks(30, "slow"), tmp_path / "out").counts() == (30, 30, 0)
+    assert run_jobs(make_tasks(30, "slow"), tmp_path / "out").counts() == (30, 30, 0)
 
 
 def test_workers_of_another_version_are_refused(cluster, tmp_path, make_tasks, monkeypatch):
-    for module in ("task", "running", "cluster"):
+    for module in ("job", "runner", "cluster"):
         monkeypatch.setattr(f"fleet.study.{module}.program_version", lambda: "9.9+other")
     with pytest.raises(BrokenOff, match=r"a Dask worker runs .*, and the study 9\.9\+other"):
-        run_tasks(make_tasks(3), tmp_path / "out", scheduler=cluster.address)
+        run_jobs(make_tasks(3), tmp_path / "out", scheduler=cluster.address)
 
 
 def test_a_cluster_without_workers_is_given_up(own_cluster, tmp_path, make_tasks, monkeypatch):
     monkeypatch.setattr("fleet.study.cluster.PATIENCE", 1.0)
     with pytest.raises(BrokenOff, match="has had no worker for 1 s"):
-        run_tasks(make_tasks(3), tmp_path / "out", scheduler=own_cluster.address)
+        run_jobs(make_tasks(3), tmp_path / "out", scheduler=own_cluster.address)
 
 
 def test_an_address_that_is_none(tmp_path, make_tasks, monkeypatch):
     monkeypatch.setattr("fleet.study.cluster.ANSWER", 0.5)
     with pytest.raises(BrokenOff, match="no Dask scheduler answers at 'nonsense'"):
-        run_tasks(make_tasks(1), tmp_path / "out", scheduler="nonsense")
+        run_jobs(make_tasks(1), tmp_path / "out", scheduler="nonsense")

@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from fleet.cli import main
-from fleet.study import StudyResult
+from fleet.study import StudyResult, kept
 
 STUDY = """\
 seeds = 2
@@ -177,15 +177,13 @@ def test_replay_runs_a_run_again_to_the_bit(swept):
 
 def test_replay_notices_a_run_that_differs(swept, monkeypatch):
     key = next(iter(StudyResult(swept).rows()))["key"]
-    from fleet.study import replaying
-
-    kept = replaying.kept_run(swept, key)
-    assert kept.row is not None
-    kept.row["messages"] += 1
-    monkeypatch.setattr(replaying, "kept_run", lambda *_: kept)
+    found = kept.kept_run(swept, key)
+    assert found.row is not None
+    found.row["messages"] += 1
+    monkeypatch.setattr(kept, "kept_run", lambda *_: found)
     done = fleet("replay", swept, key)
     assert done.exit_code == 1
-    assert f"messages was {kept.row['messages']}, is {kept.row['messages'] - 1}" in done.stderr
+    assert f"messages was {found.row['messages']}, is {found.row['messages'] - 1}" in done.stderr
     assert f"run {key[:12]} is not the run that is kept" in done.stderr
 
 

@@ -12,29 +12,29 @@ from pathlib import Path
 
 import pytest
 
-from fleet.study import StudyResult, run_tasks
+from fleet.study import StudyResult, run_jobs
 
 COUNT = 60
 SCRIPT = """\
 import os, sys
 sys.path.insert(0, {deeds!r})
-from fleet.study import Task, run_tasks
+from fleet.study import Job, run_jobs
 
 open("main-ran", "a").write("x")
-tasks = [
-    Task.of(
+jobs = [
+    Job.of(
         {{"n": n, "log": {log!r}}}, cell=f"n={{n}}", labels={{"label": n % 3}},
         function={function!r},
     )
     for n in range({count})
 ]
-run_tasks(tasks, {out!r}, workers=2)
+run_jobs(jobs, {out!r}, workers=2)
 """
 
 
 @pytest.fixture
 def study(tmp_path, log):
-    """Start a study of slow tasks as a program of its own; its script has no main guard."""
+    """Start a study of slow jobs as a program of its own; its script has no main guard."""
     started = []
 
     def start(function="deeds:slow", count=COUNT, **options):
@@ -71,7 +71,7 @@ def wait_for_calls(calls, count, process):
 def assert_all_there(tmp_path, make_tasks, calls, most_twice=2):
     """Resume, and look: every row once, and no more repeated than was under way."""
     before = {row["key"] for row in StudyResult(tmp_path / "out").rows()}
-    result = run_tasks(make_tasks(COUNT, "slow"), tmp_path / "out", workers=2)
+    result = run_jobs(make_tasks(COUNT, "slow"), tmp_path / "out", workers=2)
     rows = list(result.rows())
     assert sorted(row["n"] for row in rows) == list(range(COUNT))
     assert before <= {row["key"] for row in rows}
@@ -153,7 +153,7 @@ def test_a_full_disk_is_said_and_the_study_goes_on_when_there_is_room(
 
 
 def test_a_full_disk_leaves_the_table_that_was_there(tmp_path, make_tasks, monkeypatch):
-    result = run_tasks(make_tasks(3), tmp_path / "out", workers=1)
+    result = run_jobs(make_tasks(3), tmp_path / "out", workers=1)
     before = (tmp_path / "out" / "runs.parquet").read_bytes()
     script = (
         "import resource, sys; from fleet.study import StudyResult\n"

@@ -7,8 +7,8 @@ import pytest
 from fleet.scenario.errors import BadInput
 from fleet.scenario.model import Scenario
 from fleet.study.design import Study, label
-from fleet.study.loading import load_study, study_from
-from fleet.study.task import Task
+from fleet.study.job import Job
+from fleet.study.study_file import load_study, study_from
 
 STUDY = """\
 title = "Protocols on two floors"
@@ -41,28 +41,28 @@ def file(tmp_path):
 
 def test_a_study_is_all_combinations_with_all_seeds(file):
     study = load_study(file)
-    tasks = list(study.tasks())
-    assert len(tasks) == len(study) == 3 * 2 * 2 * 3
-    assert len({task.key for task in tasks}) == len(tasks)
+    jobs = list(study.jobs())
+    assert len(jobs) == len(study) == 3 * 2 * 2 * 3
+    assert len({job.key for job in jobs}) == len(jobs)
     assert study.varied == ["protocol", "range", "robots", "world.width"]
-    assert tasks[0].labels == {
+    assert jobs[0].labels == {
         "protocol": "rfta2", "range": 2, "robots": 60, "world_width": 8.0, "seed": 10
     }  # fmt: skip
-    assert tasks[0].cell == "protocol=rfta2 range=2 robots=60 world_width=8.0"
-    assert tasks[0].tables == ("robots",)
-    assert {task.labels["protocol"] for task in tasks} == {
+    assert jobs[0].cell == "protocol=rfta2 range=2 robots=60 world_width=8.0"
+    assert jobs[0].tables == ("robots",)
+    assert {job.labels["protocol"] for job in jobs} == {
         "rfta2", "rfta2 metric=distance", "gfgf2a"
     }  # fmt: skip
 
 
 def test_the_tasks_scenarios_are_whole_and_paired_by_seed(file):
-    tasks = list(load_study(file).tasks())
-    for task in tasks:
-        scenario = Scenario.of(**task.scenario)
-        assert scenario.as_dict() == task.scenario
+    jobs = list(load_study(file).jobs())
+    for job in jobs:
+        scenario = Scenario.of(**job.scenario)
+        assert scenario.as_dict() == job.scenario
         assert scenario.rounds == 20
         assert (scenario.robots, scenario.world.parameters["width"]) in [(60, 8.0), (100, 10.0)]
-    seeds = [task.scenario["seed"] for task in tasks]
+    seeds = [job.scenario["seed"] for job in jobs]
     assert seeds == sorted(seeds)  # a study that is stopped has something of every cell
     assert set(seeds) == {10, 11, 12}
 
@@ -71,7 +71,7 @@ def test_a_name_comes_before_what_it_is_given():
     study = study_from(
         {"axes": {"protocol.metric": ["distance", "energy-left"], "protocol": ["rfta1", "rfta2"]}}
     )
-    chosen = [task.scenario["protocol"] for task in study.tasks()]
+    chosen = [job.scenario["protocol"] for job in study.jobs()]
     assert sorted((protocol["name"], protocol["metric"]) for protocol in chosen) == [
         (name, metric) for name in ("rfta1", "rfta2") for metric in ("distance", "energy-left")
     ]
@@ -98,7 +98,7 @@ def test_cases_stand_where_a_product_makes_no_sense():
     assert second["protocol_metric"] == "distance"
     assert second["robot_capacity"] == 50.0
     assert len(study) == 4
-    assert [task.scenario["seed"] for task in study.tasks()] == [4, 4, 2, 2]
+    assert [job.scenario["seed"] for job in study.jobs()] == [4, 4, 2, 2]
 
 
 def test_labels_of_one_column_are_of_one_kind():
@@ -111,8 +111,8 @@ def test_labels_of_one_column_are_of_one_kind():
 
 
 def test_a_study_without_anything_is_the_default_scenario_once():
-    (task,) = study_from({}).tasks()
-    assert Scenario.of(**task.scenario) == Scenario()
+    (job,) = study_from({}).jobs()
+    assert Scenario.of(**job.scenario) == Scenario()
 
 
 def test_a_study_is_equal_to_its_file(file):
@@ -221,20 +221,20 @@ def test_a_key_follows_the_user_s_own_files(tmp_path):
     mine = tmp_path / "mine.py"
     mine.write_text(MINE.format(sign=""))
     scenario = {"protocol": {"name": "rfta2", "metric": f"{mine}:nearest"}, "seed": 1}
-    before = Task.of(scenario)
-    assert Task.of(dict(reversed(scenario.items()))).key == before.key
+    before = Job.of(scenario)
+    assert Job.of(dict(reversed(scenario.items()))).key == before.key
     mine.write_text(MINE.format(sign="- "))
-    assert Task.of(scenario).key != before.key
+    assert Job.of(scenario).key != before.key
     mine.write_text(MINE.format(sign=""))
-    assert Task.of(scenario).key == before.key
+    assert Job.of(scenario).key == before.key
 
 
 def test_a_key_is_of_what_is_run_and_nothing_else():
-    task = Task.of({"seed": 1})
-    assert Task.of({"seed": 1}, cell="a", labels={"b": 2}).key == task.key
-    assert Task.of({"seed": 2}).key != task.key
-    assert Task.of({"seed": 1}, tables=("robots",)).key != task.key
-    assert Task.of({"seed": 1}, function="deeds:note").key != task.key
+    job = Job.of({"seed": 1})
+    assert Job.of({"seed": 1}, cell="a", labels={"b": 2}).key == job.key
+    assert Job.of({"seed": 2}).key != job.key
+    assert Job.of({"seed": 1}, tables=("robots",)).key != job.key
+    assert Job.of({"seed": 1}, function="deeds:note").key != job.key
 
 
 def test_a_varied_event_process_does_not_hide_how_many_events_there_were():

@@ -13,11 +13,11 @@ from click.testing import CliRunner
 
 from fleet.cli import main
 from fleet.scenario.errors import BadInput
-from fleet.study import StudyResult, run_tasks
+from fleet.study import StudyResult, run_jobs
 from fleet.study.report.layout import layout
 from fleet.study.report.quantities import measures
 from fleet.study.report.runs import ended, runs_of
-from fleet.study.report.writing import write_report
+from fleet.study.report.study_report import write_report
 from fleet.study.statistics import mean_interval, paired_difference
 from fleet.study.sweeping import sweep
 
@@ -177,12 +177,12 @@ def test_a_study_without_axes_or_results_still_has_a_page(tmp_path, make_tasks):
     text = write_report(tmp_path / "one").read_text()
     assert "1 of 1 runs" in text
     assert "lifetime" in text
-    run_tasks(make_tasks(1, "deadly", victim=0, deed="raise"), tmp_path / "none", workers=1)
+    run_jobs(make_tasks(1, "deadly", victim=0, deed="raise"), tmp_path / "none", workers=1)
     assert "No run is done yet." in write_report(tmp_path / "none").read_text()
 
 
 def test_rows_of_another_kind_of_work_are_reported_too(tmp_path, make_tasks):
-    run_tasks(make_tasks(12), tmp_path, workers=1)
+    run_jobs(make_tasks(12), tmp_path, workers=1)
     text = write_report(tmp_path).read_text()
     assert "square" in text
     assert {row["measure"] for row in read(tmp_path / "report" / "means.csv")} >= {"square"}

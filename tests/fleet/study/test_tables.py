@@ -7,8 +7,8 @@ import json
 import pytest
 
 from fleet.scenario.errors import BadInput
-from fleet.study import StudyResult, run_tasks
-from fleet.study.loading import study_from
+from fleet.study import StudyResult, run_jobs
+from fleet.study.study_file import study_from
 from fleet.study.sweeping import sweep
 
 STUDY = {
@@ -116,8 +116,8 @@ def test_results_are_the_same_to_the_bit_however_many_processes(result, tmp_path
     from fleet.assembly import run
     from fleet.scenario.loading import scenario_from
 
-    for row, task in zip(result.rows(), study_from(STUDY).tasks(), strict=True):
-        here = json.loads(json.dumps(run(scenario_from(task.scenario)).as_dict()))
+    for row, job in zip(result.rows(), study_from(STUDY).jobs(), strict=True):
+        here = json.loads(json.dumps(run(scenario_from(job.scenario)).as_dict()))
         assert {k: row[k] for k in here if k != "wall_time"} == {
             k: v for k, v in here.items() if k != "wall_time"
         }
@@ -128,7 +128,7 @@ def without_time(table):
 
 
 def test_tables_of_a_work_function(tmp_path, make_tasks):
-    result = run_tasks(make_tasks(4, "with_tables"), tmp_path / "out", workers=2)
+    result = run_jobs(make_tasks(4, "with_tables"), tmp_path / "out", workers=2)
     assert result.table_names() == ["runs", "parts"]
     parts = result.table("parts").to_pylist()
     assert [(row["label"], row["part"]) for row in parts] == [
@@ -141,7 +141,7 @@ def test_tables_of_a_work_function(tmp_path, make_tasks):
 
 
 def test_a_folder_with_nothing_done_has_an_empty_table(tmp_path, make_tasks):
-    result = run_tasks(make_tasks(1, "deadly", victim=0, deed="raise"), tmp_path, workers=1)
+    result = run_jobs(make_tasks(1, "deadly", victim=0, deed="raise"), tmp_path, workers=1)
     assert result.table().num_rows == 0
     assert list(result.rows()) == []
     assert "0 of 1 runs done, 1 failed" in repr(result)

@@ -1,0 +1,113 @@
+"""The report of the energy study: one page that needs no network, and its figures beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader
+
+from fleet.experiments.energy import fleet_exhibits, trip_exhibits
+from fleet.experiments.energy.accuracy import accuracy
+from fleet.experiments.energy.exhibits import Exhibit
+from fleet.experiments.energy.findings import details, findings, on_bids, on_closure, verdict
+from fleet.experiments.energy.lives import Life
+from fleet.experiments.energy.models import CORRECTED, LINE, fit
+from fleet.experiments.energy.settings import ENGINE, NO_INERTIA, PAPER
+from fleet.experiments.energy.trip_table import TripTable
+from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
+from fleet.study.version import environment
+
+TITLES = {
+    "distance": "Against the straight distance",
+    "parts": "Where the rest goes",
+    "models": "Models of what a trip costs",
+    "settings": "Other robots, crowds and floors",
+    "lifetimes-trips": "The trips that protocols ask for",
+    "traffic": "Several at once",
+    "lifetimes": "Lifetimes",
+    "differences": "What wrong bids cost, and better ones win back",
+}
+
+
+def write_report(
+    out: Path,
+    single: TripTable,
+    streams: TripTable,
+    lived: TripTable,
+    listed: Sequence[Life],
+    command: str,
+) -> Path:
+    """Write ``report.html``, and each figure as PNG, SVG and CSV into ``figures/``.
+
+    Returns the page's path.
+    """
+    folder = out / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    found = findings(single, streams, lived, listed)
+    paper = single.where(setting=PAPER).arrived()
+    with in_style("energy"):
+        shown = [
+            trip_exhibits.by_distance(paper, fit(LINE, paper)),
+            trip_exhibits.by_part(paper),
+            trip_exhibits.by_model(paper),
+            trip_exhibits.by_setting(single),
+            fleet_exhibits.by_protocol(lived, fit(CORRECTED, paper)),
+            fleet_exhibits.in_traffic(streams),
+            fleet_exhibits.lifetimes(listed),
+            fleet_exhibits.differences(listed),
+        ]
+        figures = {exhibit.name: _saved(exhibit, folder) for exhibit in shown}
+    said = {
+        "parts": on_closure(found),
+        "settings": on_engine(single),
+        "differences": on_bids(listed),
+    }
+    template = Environment(
+        loader=PackageLoader("fleet.experiments.energy", "."), autoescape=True, trim_blocks=True,
+        lstrip_blocks=True,
+    ).get_template("report.html.j2")  # fmt: skip
+    page = template.render(
+        lead=verdict(found),
+        details=details(found),
+        exhibits=[(exhibit, figures[exhibit.name]) for exhibit in shown],
+        said=said,
+        titles=TITLES,
+        command=command,
+        made_by=environment(),
+        palette=list(zip(SERIES, SERIES_DARK, strict=True)),
+    )
+    draft, path = out / ".report.html", out / "report.html"
+    draft.write_text(page, "utf-8")
+    draft.replace(path)
+    return path
+
+
+def on_engine(single: TripTable) -> str:
+    """Whether bodies in the engine drain the same."""
+    free, solid = (single.where(setting=name) for name in (PAPER, ENGINE.name))
+    if len(free) != len(solid):
+        return ""
+    gap = float(abs(free["drained"] - solid["drained"]).max())
+    same = "the same energy to the bit" if gap == 0.0 else f"the same energy within {gap:.1e} J"
+    control = single.where(setting=NO_INERTIA).arrived()
+    if not len(control):
+        return f"With its bodies stepped by pymunk, the paper’s setting drains {same}."
+    eq1 = accuracy(control["drained"], control["per_metre"] * control["planned"])
+    return (
+        f"With its bodies stepped by pymunk, the paper’s setting drains {same}, trip by trip. The"
+        f" control is a robot without inertia, which nothing but detours keeps from Eq. (1): on the"
+        f" planned path it drains {eq1.ratio:.4f} times what that says."
+    )
+
+
+def _saved(exhibit: Exhibit, folder: Path) -> Any:
+    """Write a figure's files; returns it as an element of the page."""
+    exhibit.write_csv(folder)
+    if exhibit.figure is None:
+        return ""
+    exhibit.figure.savefig(folder / f"{exhibit.name}.png", dpi=200)
+    svg = svg_of(exhibit.figure)
+    (folder / f"{exhibit.name}.svg").write_text(svg, "utf-8")
+    return inline(svg)

@@ -1,0 +1,168 @@
+"""What the energy study runs: single tasks, streams with traffic, and whole lifetimes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from fleet.robot import RobotSpec
+from fleet.study.job import Job
+
+DRIVE = "fleet.experiments.energy.measuring:drive_tasks"
+PLAY = "fleet.experiments.energy.measuring:play"
+
+PAPER = "the paper’s"  # setting, with the defaults
+NO_INERTIA = "no inertia at all"  # the control
+PIONEERS = "40 Pioneers 3-DX"  # as many as find their ways
+SHORTEST, LONGEST = 0.05, 7.0  # straight distance of single tasks [m]
+EVER = 1e6  # [J] a battery that energy plays no part in
+
+PROTOCOLS = ("gfgf2a", "rfta2", "rfta2ge", "rfta3")
+BIDS = ("straight", "path", "corrected", "driven")  # what robots believe a trip costs
+RATES = (0.5, 1.0, 2.0, 4.0)  # events a second, of streams
+STREAM = 120.0  # [s]
+STANDBY = 3.66  # [W] of robots that stand, in reserved traffic, so that waiting costs: P(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How much of everything is run."""
+
+    placements: int = 20  # for each setting
+    tasks: int = 250  # driven in each placement
+    seeds: int = 60  # of lifetimes
+    recorded: int = 20  # of these, with all their trips
+    streams: int = 8  # seeds for each kind of traffic
+
+
+FULL = Size()
+QUICK = Size(placements=4, tasks=125, seeds=6, recorded=2, streams=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """One thing that is different from the paper's setting, and what it is called."""
+
+    group: str
+    name: str
+    scenario: Mapping[str, Any] = field(default_factory=dict)
+
+
+def _robot(**keys: Any) -> dict[str, Any]:
+    return {"robot": keys}
+
+
+SETTINGS = (
+    Variation("paper", PAPER),
+    *(Variation("radius", f"radius {r} m", _robot(radius=r)) for r in (0.05, 0.15, 0.2)),
+    *(
+        Variation("acceleration", f"acceleration {a} m/s²", _robot(acceleration=a))
+        for a in (0.3, 0.5, 2.0)
+    ),
+    *(Variation("density", f"{n} robots", {"robots": n}) for n in (10, 50, 200)),
+    *(Variation("world", world, {"world": world}) for world in ("pit", "rooms", "warehouse")),
+    Variation("build", PIONEERS, {"robots": 40, **_robot(preset="pioneer")}),
+    Variation("build", "drives backwards too", _robot(reverse=True)),
+    Variation("build", "holonomic", _robot(drive="holonomic")),
+    Variation("build", "pays its kinetic energy", _robot(extra={"kinetic": True})),
+    Variation("build", "pays per wheel", _robot(extra={"per_wheel": True})),
+    Variation("build", NO_INERTIA, _robot(preset="ideal")),
+)
+"""The paper's arena and robots, and one thing different at a time."""
+
+ENGINE = Variation("engine", "in pymunk", {"motion": "physics"})
+"""The paper's setting again, its bodies stepped by the engine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where lifetimes are lived, and which setting's fit its robots know."""
+
+    name: str
+    setting: str
+    scenario: Mapping[str, Any]
+
+
+OPEN = "open floor"
+AS_IN_THE_PAPER = "as in the paper"  # bid and driven by Eq. (1)
+PLACES = (
+    Place(OPEN, PAPER, {}),
+    Place("pit", "pit", {"world": "pit"}),
+    Place("rooms", "rooms", {"world": "rooms"}),
+    Place("warehouse", "warehouse", {"world": "warehouse"}),
+    Place("40 Pioneers", PIONEERS, {"robot": "pioneer", "robots": 40, "range": 4.0}),
+)
+
+
+def single_tasks(size: Size, seed: int) -> Iterator[Job]:
+    """Every setting in the same number of placements, each with so many tasks in turn."""
+    for placement in range(seed, seed + size.placements):
+        for setting in (*SETTINGS, ENGINE):
+            robot = {**setting.scenario.get("robot", {}), "capacity": EVER}
+            scenario = {"motion": "path", "connected": False, "seed": placement}
+            scenario |= {**setting.scenario, "robot": robot}
+            yield Job.of(
+                {"scenario": scenario, "tasks": size.tasks},
+                cell=setting.name,
+                labels={
+                    "part": "single", "group": setting.group, "setting": setting.name,
+                    "placement": placement,
+                },
+                tables=("trips",),
+                function=DRIVE,
+            )  # fmt: skip
+
+
+def streams(size: Size, seed: int) -> Iterator[Job]:
+    """Several movers at once, in both kinds of traffic, ever more of them."""
+    for number in range(seed, seed + size.streams):
+        for radius in (0.1, 0.2):
+            for traffic in ("reserved", "free"):
+                for rate in RATES:
+                    idle = STANDBY if traffic == "reserved" else 0.0
+                    scenario = {
+                        "motion": {"name": "physics", "traffic": traffic},
+                        "time": {"name": "stream", "rate": rate, "duration": STREAM},
+                        "robot": {
+                            "radius": radius, "capacity": EVER, "extra": {"idle": idle}
+                        },
+                        "seed": number,
+                    }  # fmt: skip
+                    labels = {"traffic": traffic, "radius": radius, "rate": rate}
+                    yield Job.of(
+                        scenario,
+                        cell=f"{traffic} traffic, radius {radius} m, {rate} events/s",
+                        labels={"part": "stream", **labels, "seed": number},
+                        tables=("trips",),
+                        function=PLAY,
+                    )
+
+
+def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Job]:
+    """Every protocol, place and way to bid on the same seeds, and the paper's motion.
+
+    ``launch`` has the cost of a launch [J] for each setting, as it was fitted.
+    """
+    for number in range(seed, seed + size.seeds):
+        for place in PLACES:
+            ways: dict[str, Any] = {bid: {"name": "path", "belief": bid} for bid in BIDS}
+            ways["corrected"]["per_launch"] = launch[place.setting]
+            if place.name == OPEN:
+                ways = {AS_IN_THE_PAPER: "straight"} | ways
+            for protocol in PROTOCOLS:
+                for bids, motion in ways.items():
+                    scenario = {"protocol": protocol, "motion": motion, "seed": number}
+                    if bids == AS_IN_THE_PAPER:  # the points start where the bodies do
+                        scenario["world"] = {"name": "random", "room": RobotSpec().radius}
+                    kept = bids == "straight" and number < seed + size.recorded
+                    yield Job.of(
+                        {**scenario, **place.scenario},
+                        cell=f"{place.name}, {protocol}, bids {bids}",
+                        labels={
+                            "part": "lifetime", "place": place.name, "protocol": protocol,
+                            "bids": bids, "seed": number,
+                        },
+                        tables=("trips",) if kept else (),
+                        function=PLAY,
+                    )  # fmt: skip

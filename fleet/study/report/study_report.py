@@ -1,0 +1,244 @@
+"""The report of a study: one page that needs no network, and CSV and SVG files beside it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from jinja2 import Environment, PackageLoader
+from matplotlib.figure import Figure
+
+from fleet.study.ledger import Counts, Ledger, reading
+from fleet.study.parquet import runs_table, side_table
+from fleet.study.report import estimate_figures as figures
+from fleet.study.report import estimate_tables as tables
+from fleet.study.report import estimates
+from fleet.study.report.layout import Layout, layout
+from fleet.study.report.quantities import measures, name_of, short_name
+from fleet.study.report.runs import Runs, runs_of
+from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
+from fleet.study.report.text import FEWEST_PAIRS, plain
+from fleet.study.result import StudyResult
+
+T = TypeVar("T", estimates.Mean, estimates.Contrast, estimates.Curve, estimates.Energies)
+
+MOST_FACETS = 6  # figures of one kind
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A figure of the page."""
+
+    number: int
+    caption: str
+    svg: str
+    csv: str
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A heading with its figures and its table."""
+
+    title: str
+    text: str
+    figures: list[Shown]
+    table: tables.Table | None
+    csv: str
+
+
+def write_report(folder: Path) -> Path:
+    """Write ``report.html`` into the folder of a study, and its data into ``report/``.
+
+    It tells what there is, also while the study goes on.
+
+    Raises:
+        BadInput: the folder holds no study, or the study's ``[report]`` asks for what is not
+            there.
+    """
+    with reading(folder) as ledger:
+        meta, counts, failures = ledger.meta(), ledger.counts(), ledger.failures()
+        runs = runs_of(runs_table(ledger.rows()), ledger.labels())
+        robots = _robots(ledger)
+    if counts.left or not (folder / "runs.parquet").exists():  # the sweep writes it at its end
+        StudyResult(folder).write()
+    beside = folder / "report"
+    beside.mkdir(exist_ok=True)
+    study = meta.get("study", {})
+    sections = list(_sections(runs, robots, study.get("report", {}), beside)) if len(runs) else []
+    page = _template().render(
+        title=study.get("title") or f"Study in {folder.resolve().name}",
+        counts=counts,
+        sections=sections,
+        failures=failures,
+        design=_design(runs),
+        fixed=_fixed(runs),
+        seeds=_seeds(runs),
+        summary=_summary(runs, counts),
+        source=meta.get("source") or json.dumps(study, indent=2),
+        command=meta.get("command", ""),
+        made_by=meta.get("made_by", {}),
+        palette=list(zip(SERIES, SERIES_DARK, strict=True)),
+    )
+    draft, path = folder / ".report.html", folder / "report.html"
+    draft.write_text(page, "utf-8")
+    draft.replace(path)
+    return path
+
+
+def _sections(
+    runs: Runs, robots: Runs | None, asked: dict[str, Any], beside: Path
+) -> Iterator[Section]:
+    plan = layout(runs, asked)
+    chosen = measures(runs, asked.get("measures"))
+    number = _Numbers()
+    found = estimates.means(runs, plan, chosen)
+    if found:
+        most = max(mean.runs for mean in found)
+        tables.write_means(beside / "means.csv", found, plan)
+        yield Section(
+            "Means", "Whiskers and ± are 95 % confidence intervals of the mean, after Student.",
+            list(_drawn(
+                "means", found, plan, figures.draw_means, f"Means over {most} runs each", beside,
+                number,
+            )),
+            tables.means_table(found, plan), "report/means.csv",
+        )  # fmt: skip
+    against = estimates.contrasts(runs, plan, chosen)
+    if against:
+        tables.write_contrasts(beside / "differences.csv", against, plan)
+        named = isinstance(plan.baseline, str)
+        baseline = f"{'' if named else f'{short_name(str(plan.series))} '}{plain(plan.baseline)}"
+        yield Section(
+            f"Differences from {baseline}",
+            f"{_pairs(plan)} Intervals are 95 % BCa bootstrap intervals of the mean difference; d"
+            " is Cohen’s for pairs. In bold: the interval excludes 0,"
+            f" if there are {FEWEST_PAIRS} pairs or more.",
+            list(_drawn(
+                "differences", against, plan, figures.draw_contrasts,
+                f"Paired differences from {baseline}", beside, number,
+            )),
+            tables.contrasts_table(against, plan), "report/differences.csv",
+        )  # fmt: skip
+    if robots is not None and len(robots):
+        left = estimates.energies(robots, plan)
+        tables.write_energies(beside / "energy.csv", left, plan)
+        yield Section(
+            "Energy balance",
+            "How the energy that is left is spread over the robots of all runs: the steeper, the"
+            " more alike they are.",
+            list(_drawn(
+                "energy", left, plan, figures.draw_energies,
+                "Energy left in the robots at the end of a run", beside, number,
+            )),
+            None, "report/energy.csv",
+        )  # fmt: skip
+    lives = estimates.curves(runs, plan)
+    if lives:
+        tables.write_curves(beside / "survival.csv", lives, plan)
+        yield Section(
+            "Lifetimes",
+            "The share of networks that outlive each round, after Kaplan and Meier, with 95 %"
+            " intervals after Greenwood. Runs that were cut off at their limit of rounds count as"
+            " long as they were seen.",
+            list(_drawn(
+                "survival", lives, plan, figures.draw_curves, "Survival of the network", beside,
+                number,
+            )),
+            tables.curves_table(lives, plan), "report/survival.csv",
+        )  # fmt: skip
+
+
+def _pairs(plan: Layout) -> str:
+    """What runs of one seed have in common; the network depends on no more than the world does."""
+    if str(plan.series).startswith(("protocol", "search_radius")):
+        return (
+            "Runs of one seed have the same network and the same events, and are compared as pairs."
+        )
+    return "Runs of one seed are compared as pairs."
+
+
+class _Numbers:
+    """Counts the figures of the page."""
+
+    def __init__(self) -> None:
+        self.last = 0
+
+    def next(self) -> int:
+        self.last += 1
+        return self.last
+
+
+def _drawn(
+    kind: str,
+    items: Sequence[T],
+    plan: Layout,
+    draw: Callable[[Sequence[T], Layout], Figure],
+    caption: str,
+    beside: Path,
+    number: _Numbers,
+) -> Iterator[Shown]:
+    """A figure for each combination of the facets, as far as there is room."""
+    facets = list(dict.fromkeys(item.cell.facet for item in items))
+    for place, facet in enumerate(facets[:MOST_FACETS]):
+        where = ", ".join(
+            f"{short_name(name)} {plain(value)}"
+            for name, value in zip(plan.facets, facet, strict=True)
+        )
+        name = f"{kind}-{place + 1}" if len(facets) > 1 else kind
+        with in_style(name):
+            svg = svg_of(draw([item for item in items if item.cell.facet == facet], plan))
+        (beside / f"{name}.svg").write_text(svg, "utf-8")
+        rest = len(facets) - MOST_FACETS
+        more = f" {rest} more combinations are in the CSV file." if rest > 0 else ""
+        said = f"{caption}: {where}." if where else f"{caption}."
+        yield Shown(number.next(), said + more, inline(svg), f"report/{name}.svg")
+
+
+def _robots(ledger: Ledger) -> Runs | None:
+    """The table of robots with the axes of the study, if there is one."""
+    if "robots" not in ledger.table_names():
+        return None
+    return runs_of(side_table(ledger, "robots"), ledger.labels())
+
+
+def _design(runs: Runs) -> list[tuple[str, str]]:
+    """The axes with their values."""
+    return [(name_of(axis), ", ".join(map(plain, runs.values(axis)))) for axis in runs.axes]
+
+
+def _fixed(runs: Runs) -> list[tuple[str, str]]:
+    """What all runs have in common, of what their summary says."""
+    names = ("protocol", "world", "motion", "robots", "radio_range", "search_radius")
+    return [
+        (short_name(name), plain(runs.values(name)[0]))
+        for name in names
+        if name in runs.columns and name not in runs.axes and len(runs.values(name)) == 1
+    ]
+
+
+def _seeds(runs: Runs) -> str:
+    if "seed" not in runs.columns or not len(runs):
+        return ""
+    seeds = sorted(runs.values("seed"))
+    if len(seeds) > 2 and seeds == list(range(seeds[0], seeds[-1] + 1)):
+        return f"{seeds[0]} to {seeds[-1]}"
+    return ", ".join(map(str, seeds[:20])) + (" …" if len(seeds) > 20 else "")
+
+
+def _summary(runs: Runs, counts: Counts) -> str:
+    cells = len(list(runs.groups(runs.axes))) if len(runs) else 0
+    parts = [f"{counts.done} of {counts.total} runs"]
+    if cells > 1:
+        parts.append(f"{cells} combinations")
+    return ", ".join(parts)
+
+
+def _template() -> Any:
+    environment = Environment(
+        loader=PackageLoader("fleet.study.report", "."), autoescape=True, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    return environment.get_template("report.html.j2")

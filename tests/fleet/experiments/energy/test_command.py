@@ -1,0 +1,104 @@
+"""``fleet energy`` from end to end."""
+
+from __future__ import annotations
+
+import csv
+import html
+import re
+
+import pytest
+from click.testing import CliRunner
+
+from fleet.cli import main
+from fleet.experiments.energy import settings
+from fleet.study import StudyResult
+
+NAMES = (
+    "distance", "parts", "models", "settings", "lifetimes-trips", "traffic", "lifetimes",
+    "differences",
+)  # fmt: skip
+
+
+def energy(*arguments):
+    return CliRunner().invoke(main, ["energy", *map(str, arguments)], catch_exceptions=False)
+
+
+@pytest.fixture
+def tiny(monkeypatch):
+    """The study with two settings, two places and two protocols."""
+    monkeypatch.setattr(settings, "QUICK", settings.Size(2, 60, 2, 1, 1))
+    chosen = [s for s in settings.SETTINGS if s.name in {settings.PAPER, "rooms"}]
+    monkeypatch.setattr(settings, "SETTINGS", tuple(chosen))
+    monkeypatch.setattr(settings, "PLACES", settings.PLACES[::2][:2])
+    monkeypatch.setattr(settings, "PROTOCOLS", ("rfta2", "gfgf2a"))
+    monkeypatch.setattr(settings, "RATES", (1.0, 4.0))
+    monkeypatch.setattr(settings, "STREAM", 20.0)
+
+
+def lead_of(out):
+    page = (out / "report.html").read_text("utf-8")
+    return html.unescape(re.search(r"<p[^>]*>(.*?)</p>", page, re.DOTALL)[1])
+
+
+def test_a_tiny_study_is_run_and_reported(tmp_path, tiny):
+    out = tmp_path / "out"
+    done = energy("--out", out, "--quick", "--workers", 2)
+    assert done.exit_code == 0, done.output
+    assert done.stdout == f"Report: {out / 'report.html'}\n"
+    assert done.stderr == ""
+    lead = lead_of(out)
+    assert "may be used for long trips over an open floor: " in lead
+    assert "It may not be used for what the protocols ask for" in lead
+    assert re.search(r"and [56]\.\d\sJ a launch come nearer", lead)
+    page = (out / "report.html").read_text("utf-8")
+    assert "the parts add up to what the batteries lost" in page
+    assert "the same energy to the bit" in page
+    assert page.count("<figure") == page.count("<svg") == len(NAMES)
+    assert "http" not in re.sub(r"http://www\.w3\.org\S*", "", page)
+    for name in NAMES:
+        for kind in ("png", "svg", "csv"):
+            assert (out / "figures" / f"{name}.{kind}").stat().st_size > 100
+    with (out / "figures" / "models.csv").open(encoding="utf-8") as file:
+        models = {row["model"]: float(row["R²"]) for row in csv.DictReader(file)}
+    assert models["Eq. (1)"] < models["Eq. (1) on the planned path + launch"] <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--workers", 0], "'--workers': 0 is not in the range x>=1"),
+        (["--seed", -1], "'--seed': -1 is not in the range x>=0"),
+        (["--seed", "one"], "'--seed': 'one' is not a valid integer"),
+    ],
+)
+def test_bad_options_are_exit_2(tmp_path, arguments, said):
+    done = energy("--out", tmp_path / "out", *arguments)
+    assert done.exit_code == 2
+    assert said in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_is_a_file_is_exit_2(tmp_path):
+    (tmp_path / "out").write_text("")
+    done = energy("--out", tmp_path / "out")
+    assert done.exit_code == 2
+    assert "cannot be used: " in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_a_quick_study_says_what_the_full_one_does(tmp_path):
+    out = tmp_path / "out"
+    assert energy("--out", out, "--quick").exit_code == 0
+    lead = lead_of(out)
+    assert "It may not be used for what the protocols ask for" in lead
+    threshold = re.search(r"from ([\d.]+) m on it is within a tenth", lead)
+    assert 2.5 <= float(threshold[1]) <= 4.0
+    assert float(re.search(r"come nearer: R² = ([\d.]+)", lead)[1]) > 0.99
+    assert "the parts add up to" in (out / "report.html").read_text("utf-8")
+    counts = [StudyResult(out / part).counts() for part in ("trips", "lifetimes")]
+    parts = [list(StudyResult(out / part).rows()) for part in ("trips", "lifetimes")]
+    assert energy("--out", out, "--quick").exit_code == 0  # there is nothing left to run
+    assert [StudyResult(out / part).counts() for part in ("trips", "lifetimes")] == counts
+    assert [list(StudyResult(out / part).rows()) for part in ("trips", "lifetimes")] == parts
+    assert lead_of(out) == lead

@@ -1,0 +1,72 @@
+"""The first paragraph says what the numbers say, whichever way they are."""
+
+from __future__ import annotations
+
+import pytest
+
+from fleet.experiments.energy.findings import details, findings, on_bids, on_closure, verdict
+from fleet.experiments.energy.lives import MEASURES, lives
+
+
+def life(bids, lifetime, unbroken, failed):
+    return [
+        {"place": "open floor", "protocol": "rfta2", "bids": bids, "seed": seed}
+        | dict.fromkeys(MEASURES, 0.0)
+        | {"lifetime": lifetime, "unbroken": unbroken, "failed": failed}
+        for seed in (1, 2)
+    ]
+
+
+LISTED = lives(
+    life("as in the paper", 300, 300, 0) + life("straight", 200, 80, 4.0)
+    + life("path", 210, 90, 3.0) + life("corrected", 190, 180, 0.5)
+)  # fmt: skip
+
+
+def test_where_launches_cost_eq1_may_not_be_used_for_short_trips(make_trips):
+    single = make_trips(20_000, launch=5.0)
+    asked = single.take(single["straight"] < 1.0)
+    found = findings(single, asked, asked, LISTED)
+    assert found.launch.value == pytest.approx(5.0)
+    assert found.within_10 == pytest.approx(2.25)
+    said = verdict(found)
+    assert "from 2.25 m on it is within a tenth of what is drained" in said
+    assert "It may not be used for what the protocols ask for" in said
+    assert f"{asked['straight'].mean():.2f} m long on average" in said
+    assert "5.0 J a launch come nearer: R² = 1.0000" in said
+    more = " ".join(details(found))
+    assert "rfta2 49 % more" in more
+    assert "cost 5.00 J [5.00, 5.00]" in more
+    assert "live longer than those that drive: rfta2 1.50 times" in more
+
+
+def test_where_eq1_is_true_it_may_be_used(make_trips):
+    trips = make_trips()
+    found = findings(trips, trips, trips, [])
+    said = verdict(found)
+    assert "from 0 m on it is within a tenth of what is drained, and from 0 m on" in said
+    assert "It may also be used for what the protocols ask for" in said
+    assert "drained 0 % more than it says" in said
+    assert not any("Networks simulated" in sentence for sentence in details(found))
+
+
+def test_where_detours_are_everywhere_it_may_not_be_used_at_all(make_trips):
+    trips = make_trips(detour=1.3)
+    said = verdict(findings(trips, trips, trips, []))
+    assert "it is nowhere within a tenth, up to 7 m" in said
+
+
+def test_bids_are_compared_by_failures_and_lifetimes():
+    said = on_bids(LISTED)
+    assert "rfta2 4.0 and 0.5 a lifetime, 80 and 180 events before the first" in said
+    assert "changes by −5 % to −5 %" in said
+    assert "planned path make it longer in 1 of 1 cases, at most by 5 % (open floor, rfta2)" in said
+    assert "corrected model make it longer in 0 of 1 cases, and shorter in 1" in said
+    assert on_bids([]) == ""
+
+
+def test_an_account_that_does_not_close_is_said(make_trips):
+    trips = make_trips(launch=5.0)
+    assert "the parts add up to what" in on_closure(findings(trips, trips, trips, []))
+    trips["energy_ramps"][3] += 1.0
+    assert "the parts do NOT add up to what" in on_closure(findings(trips, trips, trips, []))
