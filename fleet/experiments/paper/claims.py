@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fleet.experiments.paper.campaign_runs import Results
-from fleet.experiments.paper.comparison import compare
+from fleet.experiments.paper.printed_tables import compare
 
 Verdict = Literal["holds", "does not hold", "the paper contradicts itself"]
 TWO_SR = 2.0  # [m]

@@ -17,8 +17,8 @@ from fleet.assembly import prepare
 from fleet.experiments.paper import beyond
 from fleet.experiments.paper.campaign_runs import Results
 from fleet.experiments.paper.claims import Claim, claims
-from fleet.experiments.paper.comparison import Comparison, compare
 from fleet.experiments.paper.paper_figures import NAMES, Numbered, draw_all
+from fleet.experiments.paper.printed_tables import Comparison, compare
 from fleet.experiments.paper.published import MeanSd
 from fleet.experiments.paper.theory import theory_claims
 from fleet.scenario.model import Scenario

@@ -14,8 +14,8 @@ from fleet.experiments.paper.beyond import reaches
 from fleet.experiments.paper.campaign_runs import Results
 from fleet.experiments.paper.cases import RANGES, SEARCH_RADII, SERIES, WORLDS, cases
 from fleet.experiments.paper.claims import claims
-from fleet.experiments.paper.comparison import compare
 from fleet.experiments.paper.paper_campaign import paper_campaign, tasks
+from fleet.experiments.paper.printed_tables import compare
 from fleet.experiments.paper.published import IMPOSSIBLE, PROTOCOLS, ROWS, TABLES
 from fleet.experiments.paper.theory import theory_claims
 from fleet.study.bounds import Bounds
