@@ -10,26 +10,11 @@ ROOT = Path(__file__).parent.parent
 PACKAGES = ("fleet", "protocols", "worlds")
 
 # Names that are still used twice. These lists only ever get shorter; at the end they are empty.
-FILES_TO_RENAME = {
-    "campaign.py",
-    "errors.py",
-    "figures.py",
-    "loading.py",
-    "report.py",
-    "results.py",
-    "running.py",
-    "tables.py",
-}
-CLASSES_TO_RENAME = {
-    "Cell",
-    "Engine",
+FILES_TO_RENAME: set[str] = set()
+CLASSES_TO_RENAME: set[str] = {
     "Entry",
     "Handler",
     "Robot",
-    "Rounds",
-    "Row",
-    "Setting",
-    "Task",
 }
 
 
