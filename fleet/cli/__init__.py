@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from difflib import get_close_matches
 from importlib import import_module
+from typing import Any
 
 import click
 
 from fleet import __version__
+from fleet.cli.exits import exits
 
 # A command is in the file of its name.
 COMMANDS = {
@@ -25,6 +28,14 @@ COMMANDS = {
 
 class LazyGroup(click.Group):
     """Commands that are imported only when they are called, or asked for their own help."""
+
+    def main(self, *args: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+        """Run a command, and end as :mod:`fleet.cli.exits` says."""
+        if not standalone_mode:
+            return super().main(*args, standalone_mode=False, **extra)
+        with exits():
+            code = super().main(*args, standalone_mode=False, **extra)
+        sys.exit(code if isinstance(code, int) else 0)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """All command names, in order."""

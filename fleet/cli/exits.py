@@ -1,4 +1,4 @@
-"""Bad input ends with one clear sentence and exit code 2, never with a traceback."""
+"""How a command ends: bad input with clear sentences and exit code 2, never with a traceback."""
 
 from __future__ import annotations
 
@@ -9,30 +9,64 @@ from pathlib import Path
 
 import click
 
-from fleet.replay.failures import CannotRecord
-from fleet.scenario.errors import BadInput
-from worlds.arena import ImpossibleWorld
-
+BAD_INPUT = 2
 INTERRUPTED = 130
+MOST_SAID = 480  # characters of all sentences together; what is more is counted
+MOST_LINE = 300  # characters of one sentence
 
 
 @contextmanager
-def bad_input_exits() -> Iterator[None]:
-    """Turn what the user can mend into exit code 2, and Ctrl-C into 130; what the machine does not
-    let a recording do is said in a sentence too, with exit code 1.
+def exits() -> Iterator[None]:
+    """Turn how a command ends into what is said of it, and its exit code.
+
+    What the user can mend has exit code 2, Ctrl-C 130, what the machine does not let us do 1.
+    Anything else is our own failure, and is not hidden.
     """
     try:
         yield
-    except (BadInput, ImpossibleWorld) as error:
-        for line in str(error).splitlines():
-            click.echo(f"fleet: {line}", err=True)
-        sys.exit(2)
-    except CannotRecord as error:
-        click.echo(f"fleet: {error}", err=True)
-        sys.exit(1)
-    except KeyboardInterrupt:
-        click.echo("fleet: interrupted", err=True)
+    except click.ClickException as error:
+        say(error.format_message())
+        sys.exit(error.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        say("interrupted")
         sys.exit(INTERRUPTED)
+    except Exception as error:
+        code = _code(error)
+        if code is None:
+            raise
+        for line in told(str(error).splitlines()):
+            say(line)
+        sys.exit(code)
+
+
+def _code(error: Exception) -> int | None:
+    """The exit code of what a command raised; None: it is our own failure."""
+    from fleet.replay.failures import CannotRecord
+    from fleet.scenario.errors import BadInput
+    from worlds.arena import ImpossibleWorld
+
+    if isinstance(error, BadInput | ImpossibleWorld):
+        return BAD_INPUT
+    return 1 if isinstance(error, CannotRecord) else None
+
+
+def told(sentences: list[str]) -> Iterator[str]:
+    """The sentences, no longer than can be read; how many more there are."""
+    from fleet.scenario.errors import shortened
+
+    room = MOST_SAID
+    for number, sentence in enumerate(sentences):
+        line = shortened(sentence, MOST_LINE)
+        room -= len(line)
+        if number and room < 0:
+            yield f"and {len(sentences) - number} more"
+            return
+        yield line
+
+
+def say(text: str) -> None:
+    """A line on standard error."""
+    click.echo(f"fleet: {text}", err=True)
 
 
 def program() -> str:

@@ -9,13 +9,14 @@ from dataclasses import is_dataclass
 from datetime import date, time
 from functools import cache, partial
 from math import inf, isnan
-from types import NoneType
+from types import MappingProxyType, NoneType
 from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
-from fleet.scenario.errors import BadInput, bad, sentence, shown, unknown
+from fleet.scenario.errors import BadInput, bad, or_list, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
+from fleet.scenario.model import Scenario
 from fleet.scenario.numbers import numbers
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
@@ -27,8 +28,15 @@ T = TypeVar("T")
 MOST = 1e12  # of any number: nothing of a fleet is larger, and its square is still a number
 
 
-def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> partial[T]:
+def bind(
+    function: Callable[..., T],
+    table: Mapping[str, Any],
+    key: str,
+    others: Mapping[str, Callable[..., Any]] = MappingProxyType({}),
+) -> partial[T]:
     """``function`` with the keyword parameters of ``table``, checked against its annotations.
+
+    ``others`` could stand in its place, by name: a key that is none here may be one of theirs.
 
     Raises:
         BadInput: an unknown parameter, or a value of another type; ``key`` is where the table
@@ -38,7 +46,7 @@ def bind(function: Callable[..., T], table: Mapping[str, Any], key: str) -> part
     problems, values = [], {}
     for name, value in table.items():
         if name not in accepted:
-            problems.append((f"{key}.{name}", _unknown_parameter(name, accepted)))
+            problems.append((f"{key}.{name}", _no_parameter(name, function, others)))
             continue
         try:
             values[name] = convert(accepted[name], value, f"{key}.{name}")
@@ -100,8 +108,8 @@ def adapter(kind: Any) -> TypeAdapter[Any]:
 
 
 @cache
-def field_types(kind: type) -> dict[str, Any]:
-    """The fields of a dataclass with their types."""
+def field_types(kind: Callable[..., Any]) -> dict[str, Any]:
+    """The parameters of a function, or the fields of a dataclass, with their types."""
     parameters = inspect.signature(kind, eval_str=True).parameters.values()
     return {p.name: p.annotation for p in parameters}
 
@@ -129,13 +137,18 @@ def metric(value: Any, key: str) -> Metric:
     return found
 
 
-def build(function: Callable[..., T], table: Mapping[str, Any], key: str) -> T:
+def build(
+    function: Callable[..., T],
+    table: Mapping[str, Any],
+    key: str,
+    others: Mapping[str, Callable[..., Any]] = MappingProxyType({}),
+) -> T:
     """Call ``function`` with the table; what it refuses is bad input.
 
     Raises:
         BadInput: from binding, or in place of the ValueError that the function raised.
     """
-    make = bind(function, table, key)
+    make = bind(function, table, key, others)
     try:
         return make()
     except ValueError as error:
@@ -163,9 +176,18 @@ def unusable(value: Any, key: str) -> Iterator[tuple[str, str]]:
         yield key, f"is {shown(value)}; expected a number, text, a list or a table"
 
 
-def _unknown_parameter(name: str, accepted: Mapping[str, Any]) -> str:
+def _no_parameter(
+    name: str, function: Callable[..., Any], others: Mapping[str, Callable[..., Any]]
+) -> str:
+    accepted = keywords(function)
+    owners = [other for other, its in others.items() if name in keywords(its)]
+    if owners:
+        here = next((repr(other) for other, its in others.items() if its is function), "this")
+        return f"does nothing in {here}; it belongs to name = {or_list(owners[:3])}"
+    if name in Scenario.__dataclass_fields__:
+        return f"is no key of this table, but of the scenario; set {name} above the first [table]"
     if not accepted:
-        return "unknown key; there are no parameters here"
+        return f"unknown key {shown(name)}; there are no parameters here"
     return unknown("key", name, accepted)
 
 
@@ -186,8 +208,14 @@ def _unknown_keys(kind: Any, value: Any, key: str) -> list[tuple[str, str]]:
         if name in fields:
             problems.extend(_unknown_keys(fields[name], item, dotted))
         else:
-            problems.append((dotted, unknown("key", name, fields)))
+            problems.append((dotted, _no_key(name, key, fields)))
     return problems
+
+
+def _no_key(name: str, table: str, fields: Mapping[str, Any]) -> str:
+    if table and name in Scenario.__dataclass_fields__:
+        return f"is no key of [{table}], but of the scenario; set {name} above the first [table]"
+    return unknown("key", name, fields)
 
 
 def _dotted(key: str, loc: tuple[int | str, ...]) -> str:

@@ -6,14 +6,16 @@ from collections.abc import Callable, Iterator, Mapping
 from inspect import isclass
 from typing import Any
 
+from fleet.faults import Faults
 from fleet.modes import TIMINGS, Rounds, Stream
 from fleet.motion import Motion
 from fleet.motion.motions import MOTIONS
+from fleet.power import ExtraPower, PowerModel
 from fleet.radio.catalogue import RADIOS
 from fleet.radio.lossy import RadioSpec
 from fleet.robot import RobotSpec
-from fleet.scenario.binding import bind, build, keywords
-from fleet.scenario.errors import bad, shown, unknown
+from fleet.scenario.binding import bind, build, field_types, keywords
+from fleet.scenario.errors import BadInput, bad, shown, unknown
 from fleet.scenario.model import Choice, Scenario, plain
 from fleet.scenario.plugins import load_object, looks_like_file
 from fleet.scenario.rehearsal import guarded, rehearse
@@ -22,6 +24,17 @@ from protocols.messages import ProtocolFunction
 from worlds.arena import Arena
 from worlds.catalogue import EVENTS, WORLDS, World
 from worlds.events import Occurrence
+from worlds.sensors import SensorSpec
+
+
+TABLES = {
+    "robot": RobotSpec,
+    "robot.power": PowerModel,
+    "robot.extra": ExtraPower,
+    "faults": Faults,
+    "sensors": SensorSpec,
+}
+"""The tables of a scenario that are not picked by name."""
 
 
 def check(scenario: Scenario) -> None:
@@ -30,12 +43,38 @@ def check(scenario: Scenario) -> None:
     Raises:
         BadInput: something of a name does not exist, or a parameter does not fit.
     """
-    bind_protocol(scenario)
-    make_world(scenario.world)
-    motion_options(scenario.motion)
-    make_timing(scenario.time)
-    radio_spec(scenario.radio)
-    bind_events(scenario.events)
+    problems: list[tuple[str, str]] = []
+    for look_up in (
+        lambda: bind_protocol(scenario),
+        lambda: make_world(scenario.world),
+        lambda: motion_options(scenario.motion),
+        lambda: make_timing(scenario.time),
+        lambda: radio_spec(scenario.radio),
+        lambda: bind_events(scenario.events),
+    ):
+        try:
+            look_up()
+        except BadInput as error:
+            problems.extend(error.problems)
+    if problems:
+        raise BadInput(problems)
+
+
+def homes(name: str) -> Iterator[str]:
+    """The tables of a scenario that have a key of that name, as ``table.name``."""
+    for table, functions in (
+        ("protocol", _functions(PROTOCOLS)),
+        ("world", _functions(WORLDS)),
+        ("motion", _options()),
+        ("time", _functions(TIMINGS)),
+        ("radio", _functions(RADIOS)),
+        ("events", _functions(EVENTS)),
+    ):
+        if any(name in keywords(function) for function in functions.values()):
+            yield f"{table}.{name}"
+    for table, kind in TABLES.items():
+        if name in field_types(kind):
+            yield f"{table}.{name}"
 
 
 def bind_protocol(scenario: Scenario) -> ProtocolFunction:
@@ -63,11 +102,19 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     elif "search_radius" in accepted:
         parameters["search_radius"] = scenario.search_radius
     made: ProtocolFunction = (build if isclass(function) else bind)(
-        function, parameters, "protocol"
+        function, parameters, "protocol", _functions(PROTOCOLS)
     )
     made = guarded(made, name, plain(scenario.protocol))
     rehearse(made, name)
     return made
+
+
+def _functions(catalogue: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
+    return {name: entry.function for name, entry in catalogue.items()}
+
+
+def _options() -> dict[str, Callable[..., Any]]:
+    return {name: entry.options for name, entry in MOTIONS.items()}
 
 
 def make_world(choice: Choice) -> World:
@@ -78,7 +125,7 @@ def make_world(choice: Choice) -> World:
     """
     if choice.name not in WORLDS:
         raise bad("world", unknown("world", choice.name, WORLDS))
-    return build(WORLDS[choice.name].function, choice.parameters, "world")
+    return build(WORLDS[choice.name].function, choice.parameters, "world", _functions(WORLDS))
 
 
 def make_motion(
@@ -104,7 +151,12 @@ def motion_options(choice: Choice) -> Any:
     """
     if choice.name not in MOTIONS:
         raise bad("motion", unknown("motion", choice.name, MOTIONS))
-    return build(MOTIONS[choice.name].options, choice.parameters, "motion")
+    return build(
+        MOTIONS[choice.name].options,
+        choice.parameters,
+        "motion",
+        _options(),
+    )
 
 
 def make_timing(choice: Choice) -> Rounds | Stream:
@@ -115,7 +167,9 @@ def make_timing(choice: Choice) -> Rounds | Stream:
     """
     if choice.name not in TIMINGS:
         raise bad("time", unknown("time", choice.name, TIMINGS))
-    timing: Rounds | Stream = build(TIMINGS[choice.name].function, choice.parameters, "time")
+    timing: Rounds | Stream = build(
+        TIMINGS[choice.name].function, choice.parameters, "time", _functions(TIMINGS)
+    )
     return timing
 
 
@@ -127,7 +181,9 @@ def radio_spec(choice: Choice) -> RadioSpec | None:
     """
     if choice.name not in RADIOS:
         raise bad("radio", unknown("radio", choice.name, RADIOS))
-    spec: RadioSpec | None = build(RADIOS[choice.name].function, choice.parameters, "radio")
+    spec: RadioSpec | None = build(
+        RADIOS[choice.name].function, choice.parameters, "radio", _functions(RADIOS)
+    )
     return spec
 
 
@@ -139,4 +195,4 @@ def bind_events(choice: Choice) -> Callable[..., Iterator[Occurrence]]:
     """
     if choice.name not in EVENTS:
         raise bad("events", unknown("events", choice.name, EVENTS))
-    return bind(EVENTS[choice.name].function, choice.parameters, "events")
+    return bind(EVENTS[choice.name].function, choice.parameters, "events", _functions(EVENTS))

@@ -9,8 +9,8 @@ from typing import Any
 
 from fleet.robot import PRESETS
 from fleet.scenario.binding import convert, unusable
-from fleet.scenario.choices import check
-from fleet.scenario.errors import BadInput, bad, shortened, shown, unknown
+from fleet.scenario.choices import check, homes
+from fleet.scenario.errors import BadInput, bad, or_list, shortened, shown, unknown
 from fleet.scenario.model import Scenario, plain
 from fleet.scenario.paths import anchored
 from fleet.scenario.toml import Document, parse_value, read_toml
@@ -52,7 +52,9 @@ def scenario_from(data: Mapping[str, Any]) -> Scenario:
         BadInput: an unknown key, a value of another type or out of its range.
     """
     tables = plain(data)
-    if problems := list(unusable(tables, "")):
+    problems = list(unusable(tables, ""))
+    problems += [(key, _stray(key)) for key in tables if key not in Scenario.__dataclass_fields__]
+    if problems:
         raise BadInput(problems)
     for key in CHOICES:
         if key in tables:
@@ -61,6 +63,14 @@ def scenario_from(data: Mapping[str, Any]) -> Scenario:
         tables["robot"] = _robot(tables["robot"])
     scenario: Scenario = convert(Scenario, tables, "")
     return scenario
+
+
+def _stray(key: str) -> str:
+    """There is no such key, at least not outside of all tables."""
+    within = list(homes(key))
+    if within:
+        return f"unknown key {key!r}; did you mean {or_list(within[:3])}?"
+    return unknown("key", key, Scenario.__dataclass_fields__)
 
 
 def parse_setting(setting: str) -> tuple[str, Any]:
