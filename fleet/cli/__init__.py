@@ -29,12 +29,10 @@ COMMANDS = {
 class LazyGroup(click.Group):
     """Commands that are imported only when they are called, or asked for their own help."""
 
-    def main(self, *args: Any, standalone_mode: bool = True, **extra: Any) -> Any:
+    def main(self, *args: Any, **extra: Any) -> Any:
         """Run a command, and end as :mod:`fleet.cli.exits` says."""
-        if not standalone_mode:
-            return super().main(*args, standalone_mode=False, **extra)
         with exits():
-            code = super().main(*args, standalone_mode=False, **extra)
+            code = super().main(*args, **extra | {"standalone_mode": False})
         sys.exit(code if isinstance(code, int) else 0)
 
     def list_commands(self, ctx: click.Context) -> list[str]:

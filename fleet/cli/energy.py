@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.resuming import conclude, progress, resumable, say, this_command
+from fleet.cli.exits import say
+from fleet.cli.resuming import conclude, progress, resumable, this_command
 
 
 @click.command("energy")

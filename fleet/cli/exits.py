@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,10 +10,13 @@ from pathlib import Path
 
 import click
 
+from fleet.scenario.errors import BadInput, shortened
+
 BAD_INPUT = 2
 INTERRUPTED = 130
 MOST_SAID = 480  # characters of all sentences together; what is more is counted
 MOST_LINE = 300  # characters of one sentence
+NO_NUMBER = re.compile(r"^(.*) is not a valid (integer|float)\b.*$")
 
 
 @contextmanager
@@ -25,7 +29,7 @@ def exits() -> Iterator[None]:
     try:
         yield
     except click.ClickException as error:
-        say(error.format_message())
+        say(shortened(_said(error), MOST_LINE))
         sys.exit(error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         say("interrupted")
@@ -39,10 +43,25 @@ def exits() -> Iterator[None]:
         sys.exit(code)
 
 
+def _said(error: click.ClickException) -> str:
+    """What click found, in the project's words."""
+    message = error.format_message().removesuffix(".")
+    context = getattr(error, "ctx", None)
+    missing = isinstance(error, click.MissingParameter)
+    if isinstance(error, click.BadParameter) and error.param is not None and not missing:
+        name = error.param.opts[0]
+        said = NO_NUMBER.sub(r"is \1; expected a \2", error.message).replace(
+            "integer", "whole number"
+        )
+        return f"{name if name.startswith('-') else name.upper()}: {said}"
+    if context is None or message.endswith("?"):
+        return message
+    return f"{message}; see {context.command_path} --help"
+
+
 def _code(error: Exception) -> int | None:
     """The exit code of what a command raised; None: it is our own failure."""
     from fleet.replay.failures import CannotRecord
-    from fleet.scenario.errors import BadInput
     from worlds.arena import ImpossibleWorld
 
     if isinstance(error, BadInput | ImpossibleWorld):
@@ -52,8 +71,6 @@ def _code(error: Exception) -> int | None:
 
 def told(sentences: list[str]) -> Iterator[str]:
     """The sentences, no longer than can be read; how many more there are."""
-    from fleet.scenario.errors import shortened
-
     room = MOST_SAID
     for number, sentence in enumerate(sentences):
         line = shortened(sentence, MOST_LINE)

@@ -11,8 +11,6 @@ from typing import Any
 
 import click
 
-from fleet.cli.exits import bad_input_exits
-
 TIMELINES = {"round": "round", "msg": "msg", "message": "msg", "time": "sim_time"}
 THEMES = ("light", "dark")
 
@@ -78,24 +76,23 @@ def command(
 
     given = {name: value for name, value in style.items() if value is not None}
     pace = {name: given.pop(name) for name in ("frames_per_second", "speed")}
-    with bad_input_exits():
-        if (at is None) == (start is None and stop is None) or (start is None) != (stop is None):
-            raise bad("", "expected either --at, for a picture, or --from and --to, for a clip")
-        try:
-            out.absolute().parent.mkdir(parents=True, exist_ok=True)
-            if at is not None:
-                from fleet.replay.still import picture
+    if (at is None) == (start is None and stop is None) or (start is None) != (stop is None):
+        raise bad("", "expected either --at, for a picture, or --from and --to, for a clip")
+    try:
+        out.absolute().parent.mkdir(parents=True, exist_ok=True)
+        if at is not None:
+            from fleet.replay.still import picture
 
-                picture(recording, at, out, **given)
-            elif start is not None and stop is not None:
-                from fleet.replay.clip import clip
+            picture(recording, at, out, **given)
+        elif start is not None and stop is not None:
+            from fleet.replay.clip import clip
 
-                with progress() as show:
-                    clip(recording, start, stop, out, progress=show, **pace, **given)
-        except OSError as error:
-            raise bad("", f"cannot write {out}: {error.strerror or error}") from error
-        except ValueError as error:
-            raise bad("", str(error)) from error
+            with progress() as show:
+                clip(recording, start, stop, out, progress=show, **pace, **given)
+    except OSError as error:
+        raise bad("", f"cannot write {out}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise bad("", str(error)) from error
     click.echo(out)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.exits import bad_input_exits
+from fleet.cli.parameters import Recording
 
 DIFFERENT = 1
 
@@ -16,7 +16,7 @@ DIFFERENT = 1
 @click.command("replay")
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.argument("key")
-@click.option("--rrd", type=click.Path(path_type=Path), help="Record the run to this file.")
+@click.option("--rrd", type=Recording(), help="Record the run to this file.")
 @click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
 def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool) -> None:
@@ -25,23 +25,20 @@ def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool)
     FOLDER is that of the sweep. KEY is a key of runs.parquet, or its first digits. Exit code 1
     if the run is not the same to the last bit.
     """
+    from fleet.cli.exits import say
     from fleet.cli.progress import RunProgress
-    from fleet.cli.resuming import say
     from fleet.cli.summary import print_summary
     from fleet.observer import Observer
     from fleet.study.kept import kept_run
     from fleet.study.version import program_version
 
-    with bad_input_exits():
-        kept = kept_run(folder, key)
-        observers: list[Observer] = (
-            [RunProgress(kept.scenario.rounds)] if sys.stderr.isatty() else []
-        )
-        if rrd is not None or view:
-            from fleet.replay import recorder
+    kept = kept_run(folder, key)
+    observers: list[Observer] = [RunProgress(kept.scenario.rounds)] if sys.stderr.isatty() else []
+    if rrd is not None or view:
+        from fleet.replay import recorder
 
-            observers.append(recorder(kept.scenario, rrd and rrd.resolve(), live=view))
-        summary = kept.play(observers)
+        observers.append(recorder(kept.scenario, rrd and rrd.resolve(), live=view))
+    summary = kept.play(observers)
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
     else:

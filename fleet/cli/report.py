@@ -6,8 +6,6 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.exits import bad_input_exits
-
 
 @click.command("report")
 @click.argument("folder", type=click.Path(path_type=Path))
@@ -18,5 +16,4 @@ def command(folder: Path) -> None:
     """
     from fleet.study.report.study_report import write_report
 
-    with bad_input_exits():
-        click.echo(write_report(folder))
+    click.echo(write_report(folder))

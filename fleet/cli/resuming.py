@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fleet.cli.exits import bad_input_exits, program
+from fleet.cli.exits import program, say
 
 if TYPE_CHECKING:
     from fleet.study.ledger import Counts, Failure
@@ -31,15 +31,14 @@ def resumable() -> Iterator[None]:
     """Exit with what is kept and how to go on, when a study ends before its end."""
     from fleet.study.endings import BrokenOff, Interrupted
 
-    with bad_input_exits():
-        try:
-            yield
-        except Interrupted as stopped:
-            say(f"{stopped}; to go on:  {this_command()}")
-            sys.exit(128 + stopped.signal)
-        except BrokenOff as broken:
-            say(f"{broken}; what is done is kept; run the same command to go on:  {this_command()}")
-            sys.exit(BROKEN_OFF)
+    try:
+        yield
+    except Interrupted as stopped:
+        say(f"{stopped}; to go on:  {this_command()}")
+        sys.exit(128 + stopped.signal)
+    except BrokenOff as broken:
+        say(f"{broken}; what is done is kept; run the same command to go on:  {this_command()}")
+        sys.exit(BROKEN_OFF)
 
 
 @contextmanager
@@ -92,11 +91,6 @@ def conclude(result: StudyResult) -> None:
         say(f"run {failures[0].key[:12]} ({failures[0].cell}){others} {reason}")
     say(f"{failed} of {total} runs failed; the report has them all, with their tracebacks")
     sys.exit(SOME_FAILED)
-
-
-def say(text: str) -> None:
-    """A line on standard error."""
-    click.echo(f"fleet: {text}", err=True)
 
 
 def this_command() -> str:

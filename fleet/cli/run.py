@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fleet.cli.exits import bad_input_exits, program
+from fleet.cli.exits import program
+from fleet.cli.parameters import Recording, Value
 
 if TYPE_CHECKING:
     from fleet.observer import Observer
@@ -21,34 +22,41 @@ if TYPE_CHECKING:
 @click.option("--protocol", help="A name from `fleet list`, or file.py:name.  [rfta2]")
 @click.option("--world", help="A name from `fleet list`.  [random]")
 @click.option("--motion", help="straight, path or physics.  [physics]")
-@click.option("--robots", type=int, help="How many.  [100]")
-@click.option("--range", "range_", type=float, help="Radio range r, in metres.  [2.5]")
-@click.option("--search-radius", type=float, help="SR, in metres.  [2.0]")
-@click.option("--rounds", type=int, help="Stop after so many.  [a whole network lifetime]")
-@click.option("--seed", type=int, help="Decides everything that is random.  [0]")
+@click.option("--robots", type=Value("integer"), help="How many.  [100]")
+@click.option("--range", "range_", type=Value("metres"), help="Radio range r.  [2.5]")
+@click.option("--search-radius", type=Value("metres"), help="SR.  [2.0]")
+@click.option(
+    "--rounds", type=Value("integer"), help="Stop after so many.  [a whole network lifetime]"
+)
+@click.option("--seed", type=Value("integer"), help="Decides everything that is random.  [0]")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
               help="Any scenario key, such as robot.radius=0.2. Repeatable.")  # fmt: skip
-@click.option("--rrd", type=click.Path(path_type=Path), help="Record the run to this file.")
+@click.option("--rrd", type=Recording(), help="Record the run to this file.")
 @click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@click.option("--dry", is_flag=True, help="Check everything, put everybody in place, do not run.")
+@click.option("--dump", is_flag=True, help="Print the whole scenario as a file; do not run.")
 def command(
     scenario: Path | None,
-    range_: float | None,
+    range_: Any,
     settings: tuple[str, ...],
     rrd: Path | None,
-    view: bool,
     as_json: bool,
     **options: Any,
 ) -> None:
     """Play one run and print its summary.
 
-    SCENARIO is a TOML file; options win over it. Defaults, in brackets, are the paper's.
+    SCENARIO is a TOML file; options win over it, --set over both. Defaults, in brackets, are the
+    paper's.
     """
+    flags = {name: options.pop(name) for name in ("view", "dry", "dump")}
     given = {k: v for k, v in {**options, "range": range_}.items() if v is not None}
+    if flags["dump"] or flags["dry"]:
+        look(scenario, given, settings, dump=flags["dump"])
+        return
     with ExitStack() as stack:
-        stack.enter_context(bad_input_exits())
         writer = None
-        if rrd is not None or view:
+        if rrd is not None or flags["view"]:
             from fleet.replay.writer_process import WriterProcess
 
             writer = stack.enter_context(WriterProcess())  # it gets ready while we do
@@ -62,7 +70,7 @@ def command(
         if writer is not None:
             from fleet.replay import recorder
 
-            observers.append(recorder(loaded, rrd, live=view, writer=writer))
+            observers.append(recorder(loaded, rrd, live=flags["view"], writer=writer))
         summary = run(loaded, observers)
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
@@ -70,3 +78,22 @@ def command(
     print_summary(summary)
     if rrd is not None:
         click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
+
+
+def look(
+    scenario: Path | None, given: dict[str, Any], settings: tuple[str, ...], *, dump: bool
+) -> None:
+    """Everything but the run itself."""
+    from fleet.assembly import prepare
+    from fleet.scenario.loading import load_scenario
+    from fleet.scenario.resolving import as_toml
+
+    loaded = load_scenario(scenario, given, settings)
+    if dump:
+        click.echo(as_toml(loaded), nl=False)
+        return
+    ready = prepare(loaded).fleet
+    click.echo(
+        f"Ready: {loaded.protocol.name} on {loaded.world.name}, {loaded.motion.name} motion,"
+        f" {len(ready.robots)} robots, seed {loaded.seed}. Nothing was run."
+    )

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.resuming import conclude, progress, resumable, say, this_command
+from fleet.cli.exits import say
+from fleet.cli.resuming import conclude, progress, resumable, this_command
 
 
 @click.command("sweep")
@@ -20,14 +21,13 @@ from fleet.cli.resuming import conclude, progress, resumable, say, this_command
 def command(
     study: Path, out: Path, workers: int | None, scheduler: str | None, retry: bool
 ) -> None:
-    r"""Run every combination of a study with every seed, in parallel.
+    """Run every combination of a study with every seed, in parallel.
 
     STUDY is a TOML file: a scenario, axes that vary it, and seeds. The results are in
     OUT/runs.parquet. However the command ends, the same command goes on where it stopped.
 
-    \b
-    Exit codes: 0 done, 1 some runs failed, 2 bad input, 3 the disk is full or the
-    scheduler is lost, 130 Ctrl-C, 143 SIGTERM.
+    Exit codes: 0 done, 1 some runs failed, 2 bad input, 3 the disk is full or the scheduler is
+    lost, 130 Ctrl-C, 143 SIGTERM.
     """
     from fleet.study.sweeping import sweep
 

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.exits import bad_input_exits
-
 TIMELINES = ("sim_time", "round", "msg")
 
 
@@ -21,11 +19,10 @@ def command(recordings: tuple[Path, ...], web: bool, by: str | None) -> None:
     from fleet.replay.viewer import view
     from fleet.scenario.errors import bad
 
-    with bad_input_exits():
-        try:
-            view(recordings, web=web, timeline=by, tell=announce)
-        except ValueError as error:
-            raise bad("", str(error)) from error
+    try:
+        view(recordings, web=web, timeline=by, tell=announce)
+    except ValueError as error:
+        raise bad("", str(error)) from error
 
 
 def announce(address: str) -> None:

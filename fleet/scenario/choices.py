@@ -26,7 +26,6 @@ from worlds.catalogue import EVENTS, WORLDS, World
 from worlds.events import Occurrence
 from worlds.sensors import SensorSpec
 
-
 TABLES = {
     "robot": RobotSpec,
     "robot.power": PowerModel,
@@ -60,6 +59,18 @@ def check(scenario: Scenario) -> None:
         raise BadInput(problems)
 
 
+def functions_of(scenario: Scenario) -> dict[str, Callable[..., Any]]:
+    """What the parameters of each choice are given to, by the scenario's key."""
+    return {
+        "protocol": protocol_function(scenario.protocol.name),
+        "world": WORLDS[scenario.world.name].function,
+        "motion": MOTIONS[scenario.motion.name].options,
+        "time": TIMINGS[scenario.time.name].function,
+        "radio": RADIOS[scenario.radio.name].function,
+        "events": EVENTS[scenario.events.name].function,
+    }
+
+
 def homes(name: str) -> Iterator[str]:
     """The tables of a scenario that have a key of that name, as ``table.name``."""
     for table, functions in (
@@ -84,12 +95,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
         BadInput: there is none of that name, or a parameter does not fit.
     """
     name, parameters = scenario.protocol.name, dict(scenario.protocol.parameters)
-    if looks_like_file(name):
-        function: Any = load_object(name, "protocol")
-    elif name in PROTOCOLS:
-        function = PROTOCOLS[name].function
-    else:
-        raise bad("protocol", unknown("protocol", name, PROTOCOLS))
+    function = protocol_function(name)
     accepted = keywords(function)
     search = parameters.get("search", {})
     if "search" in accepted and not isinstance(search, Mapping):
@@ -107,6 +113,19 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     made = guarded(made, name, plain(scenario.protocol))
     rehearse(made, name)
     return made
+
+
+def protocol_function(name: str) -> Any:
+    """A protocol, or a class of them, of the catalogue or of a file of the user's.
+
+    Raises:
+        BadInput: there is none of that name.
+    """
+    if looks_like_file(name):
+        return load_object(name, "protocol")
+    if name not in PROTOCOLS:
+        raise bad("protocol", unknown("protocol", name, PROTOCOLS))
+    return PROTOCOLS[name].function
 
 
 def _functions(catalogue: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:

@@ -9,11 +9,12 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from fleet.cli import main
+from fleet.cli import COMMANDS, main
 from fleet.modes import TIMINGS
 from fleet.motion.motions import MOTIONS
 from fleet.radio.catalogue import RADIOS
 from fleet.results import Summary
+from fleet.scenario.model import Scenario
 from protocols.catalogue import METRICS, PROTOCOLS
 from worlds.catalogue import EVENTS, WORLDS
 
@@ -102,6 +103,82 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments):
     assert result.stdout == ""
     assert result.stderr.strip()
     assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "--protocol", "RFTA22"], "--protocol: unknown protocol 'RFTA22'; did you mean"),
+        (["run", "--robots", "2.5"], "--robots: is 2.5; expected a whole number"),
+        (["run", "--range", "wide"], "--range: is 'wide'; expected a number"),
+        (["run", "--rrd", "clip.mp4"], "--rrd: is 'clip.mp4'; expected a file that ends in .rrd"),
+        (["run", "--set", "time.rate=3"], "does nothing in 'rounds'; it belongs to"),
+        (["run", "--motion=straight", "--set=motion.dt=1"], "does nothing in 'straight'"),
+        (["run", "--set", "rate=3"], "unknown key 'rate'; did you mean 'time.rate'?"),
+        (["run", "--set", "robot.seed=3"], "is no key of [robot], but of the scenario"),
+        (["run", "--set", "seed=1979-05-27"], "seed: is 1979-05-27, a date or time; expected"),
+        (["run", "--set", "protocol.search=5"], "protocol.search: is 5; expected a table"),
+        (["run", "--set", 'protocol={name=""}'], "protocol.name: is ''; expected a name"),
+        (["run", "--set", "seed=1\nrange=3"], "seed: holds a line break; expected one value"),
+        (["run", "--set", f"seed={'7' * 5000}"], "seed: is '7777"),
+        (["run", "--set", f"x={'[' * 3000}"], "x: is '[[["),
+        (["run", "--search-radius", "inf"], "--search-radius: is inf; expected 0 to 1000000"),
+        (["run", "--range", "1e308"], "--range: is 1e+308; expected at most"),
+        (["run", "--set", r'protocol="a\u0000.py:b"'], "is not a file"),
+        (["run", "--world=placed", "--set", r'world.positions="\u0000"'], "read: embedded null"),
+        (["run", "x" * 5000], "cannot be read: File name too long"),
+        (["sweep", "a.toml", "--out", "b", "--workers", "x"], "--workers: is 'x'; expected a"),
+        (["sweep"], "Missing argument 'STUDY'; see "),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_once_shortly_and_with_its_key(arguments, said):
+    result = fleet(*arguments)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert len(result.stderr) < 500
+    assert result.stderr.count("\n") == 1
+
+
+def test_no_help_shows_how_it_was_written():
+    for name in COMMANDS:
+        text = fleet(name, "--help").stdout
+        assert "\b" not in text
+        assert "\\" not in text
+
+
+def test_a_dump_read_back_is_the_same_run(tmp_path):
+    (tmp_path / "own.py").write_text("from protocols.metrics import distance as nearest\n")
+    (tmp_path / "one.toml").write_text(
+        'robots = 40\nrange = 3.0\nrounds = 8\nmotion = "straight"\n'
+        '[protocol]\nname = "k-sap"\nmetric = "own.py:nearest"\n'
+        '[radio]\nname = "lossy"\nloss = 0.1\n'
+    )
+    dumped = fleet("run", str(tmp_path / "one.toml"), "--seed", "3", "--dump").stdout
+    (tmp_path / "other").mkdir()
+    copy = tmp_path / "other" / "copy.toml"
+    copy.write_text(dumped)
+    one = json.loads(fleet("run", str(tmp_path / "one.toml"), "--seed", "3", "--json").stdout)
+    two = json.loads(fleet("run", str(copy), "--json").stdout)
+    del one["wall_time"], two["wall_time"]
+    assert one == two
+    assert fleet("run", str(copy), "--dump").stdout == dumped
+    for key in Scenario.__dataclass_fields__:  # what has no value is left out
+        assert key in dumped or key in ("sensors", "robots")
+
+
+@pytest.mark.parametrize("protocol", sorted(PROTOCOLS))
+def test_every_protocol_can_be_dumped_and_read_back(tmp_path, protocol):
+    dumped = fleet("run", "--protocol", protocol, "--dump").stdout
+    (tmp_path / "all.toml").write_text(dumped)
+    assert fleet("run", str(tmp_path / "all.toml"), "--dump").stdout == dumped
+
+
+def test_a_dry_run_puts_everybody_in_place_and_runs_nothing():
+    said = fleet("run", "--motion", "straight", "--robots", "30", "--range", "5", "--dry")
+    assert said.stdout == (
+        "Ready: rfta2 on random, straight motion, 30 robots, seed 0. Nothing was run.\n"
+    )
+    assert fleet("run", "--motion", "straight", "--range", "0.1", "--dry").exit_code == 2
 
 
 def test_list_names_everything_with_its_source():
