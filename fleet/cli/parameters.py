@@ -24,7 +24,7 @@ class Value(click.ParamType[Any]):
             self.fail(str(error), param, ctx)
 
 
-class Recording(click.ParamType[Path]):
+class RecordingFile(click.ParamType[Path]):
     """Where a recording is to be written: a file of Rerun's, by its ending."""
 
     name = "path"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from fleet.cli.parameters import Recording
+from fleet.cli.parameters import RecordingFile
 
 DIFFERENT = 1
 
@@ -16,7 +16,7 @@ DIFFERENT = 1
 @click.command("replay")
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.argument("key")
-@click.option("--rrd", type=Recording(), help="Record the run to this file.")
+@click.option("--rrd", type=RecordingFile(), help="Record the run to this file.")
 @click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
 def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool) -> None:

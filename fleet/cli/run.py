@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fleet.cli.exits import program
-from fleet.cli.parameters import Recording, Value
+from fleet.cli.parameters import RecordingFile, Value
 
 if TYPE_CHECKING:
     from fleet.observer import Observer
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @click.option("--seed", type=Value("integer"), help="Decides everything that is random.  [0]")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
               help="Any scenario key, such as robot.radius=0.2. Repeatable.")  # fmt: skip
-@click.option("--rrd", type=Recording(), help="Record the run to this file.")
+@click.option("--rrd", type=RecordingFile(), help="Record the run to this file.")
 @click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
 @click.option("--dry", is_flag=True, help="Check everything, put everybody in place, do not run.")
