@@ -1,30 +1,75 @@
-"""``fleet energy``: the paper's Eq. (1) against motion."""
+"""``fleet energy``: is energy linear in distance, for a simulated robot or a real one's logs?"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fleet.cli.exits import say
 from fleet.cli.resuming import conclude, progress, resumable, this_command
 
+if TYPE_CHECKING:
+    from fleet.logs.asking import LogSettings
+    from fleet.logs.judging import Judgement
+
+_LOG = (
+    click.option("--log", "logs", multiple=True, type=click.Path(path_type=Path),
+                 metavar="FILE|FOLDER", help="Recorded drives of a real robot: CSV, ROS bags."),
+    click.option("--log-column", "columns", multiple=True, metavar="ROLE=NAME*FACTOR",
+                 help="Which column is what, such as v=speed*0.001. Repeatable."),
+    click.option("--voltage", type=float, help="The battery's, in volts, if it is not logged."),
+    click.option("--motor", metavar="K,R,BIAS",
+                 help="Currents are the motors': V·s/m, Ω, A at standstill."),
+    click.option("--track", type=float, help="Between the wheels, in metres."),
+    click.option("--mass", type=float, help="In kilograms."),
+    click.option("--offset", type=float, help="Of the battery's current, in amperes."),
+    click.option("--electronics", type=float, help="Constant power not in the log, in watts."),
+    click.option("--within", type=float, help="Error that a trip may have, in percent.  [10]"),
+)  # fmt: skip
+
+
+def _log_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    for option in reversed(_LOG):
+        command = option(command)
+    return command
+
 
 @click.command("energy")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOG]...")
 @click.option("--out", type=click.Path(path_type=Path), required=True,
               help="Folder for results and report. What is there is not run again.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="A tenth of it.")
 @click.option("--seed", type=click.IntRange(min=0), default=0,
               help="The first seed of placements and networks.  [0]")  # fmt: skip
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [all cores]")
-def command(out: Path, quick: bool, seed: int, workers: int | None) -> None:
-    """Test whether the energy of a trip is linear in its straight distance, as in Eq. (1).
+@_log_options
+def command(
+    paths: tuple[Path, ...],
+    out: Path,
+    quick: bool,
+    seed: int,
+    workers: int | None,
+    logs: tuple[Path, ...],
+    **told: Any,
+) -> None:
+    """Test whether the energy of a trip is linear in its distance, as in Eq. (1).
 
     Thousands of tasks, traffic and whole lifetimes are driven; Eq. (1) is compared with what
     was drained, and robots that bid by it with robots that know better. Writes OUT/report.html,
     with figures (PNG, SVG) and their numbers (CSV) in OUT/figures. Interrupted and run again,
     it goes on where it was.
+
+    With --log, the trips are those of a real robot. A file is a run, a folder is a ground; what is
+    told by options can also stand in a log.toml beside the files. Writes OUT/report.html,
+    OUT/preset.toml (a robot for scenarios), OUT/trips.csv and OUT/windows.csv.
     """
+    if logs:
+        _judge_logs((*logs, *paths), out, told)
+        return
+    _only_with_log(paths, told)
     from fleet.experiments.energy.energy_study import energy_study
     from fleet.experiments.energy.settings import FULL, QUICK
 
@@ -37,3 +82,67 @@ def command(out: Path, quick: bool, seed: int, workers: int | None) -> None:
         for result in results:
             if result.counts().failed:
                 conclude(result)
+
+
+def _only_with_log(paths: tuple[Path, ...], told: dict[str, Any]) -> None:
+    from fleet.scenario.errors import bad
+
+    if paths:
+        raise bad(str(paths[0]), "is no option; logs of a real robot are given with --log")
+    for name, value in told.items():
+        if value not in ((), None):
+            option = "log-column" if name == "columns" else name
+            raise bad(f"--{option}", "says something of logs; expected it together with --log")
+
+
+def _judge_logs(paths: tuple[Path, ...], out: Path, told: dict[str, Any]) -> None:
+    """Judge each ground, print what was chosen and found, and write the reports."""
+    from fleet.logs.gathering import gather
+    from fleet.logs.judging import judge
+    from fleet.logs.log_report import write
+
+    grounds = gather(paths, _settings(told))
+    for ground in grounds:
+        judgement = judge(ground)
+        folder = out / ground.name if len(grounds) > 1 else out
+        page = write(judgement, folder, this_command())
+        _print_judgement(judgement)
+        click.echo(f"Report: {page}\n")
+    if len(grounds) > 1:
+        from fleet.logs.comparing import slopes_sentence
+
+        click.echo(slopes_sentence([judge(ground) for ground in grounds]))
+
+
+def _settings(told: dict[str, Any]) -> LogSettings:
+    from fleet.logs.asking import LogSettings, motor_constants
+    from fleet.scenario.errors import bad
+
+    given = {name: value for name, value in told.items() if value is not None}
+    if "motor" in given:
+        given["motor"] = motor_constants(given["motor"])
+    try:
+        return LogSettings(**given)
+    except ValueError as error:
+        raise bad("--log", str(error)) from error
+
+
+def _print_judgement(judgement: Judgement) -> None:
+    from fleet.logs.log_report import closing_sentence
+    from fleet.logs.sentences import (
+        LEADS,
+        outcome_sentences,
+        summary_sentence,
+        verdict_sentence,
+    )  # fmt: skip
+
+    ground = judgement.ground
+    click.echo(f"{ground.name}: {summary_sentence(judgement)}")
+    for note in ground.notes:
+        click.echo(f"  {note}")
+    click.echo()
+    click.echo(LEADS[judgement.outcome])
+    click.echo(verdict_sentence(judgement))
+    for sentence in outcome_sentences(judgement):
+        click.echo(f"  {sentence}")
+    click.echo(f"  {closing_sentence(judgement)}")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import fleet
 
-BESIDE = ("cli", "experiments", "replay", "study")
+BESIDE = ("cli", "experiments", "logs", "replay", "study")
 """In ``fleet``: what watches runs, and decides nothing in them."""
 
 

@@ -1,0 +1,92 @@
+"""The two families of laws, on the same windows and trips of the same runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.logs.fitting import Law, MotionLaw, Sums, identified, nested, sums_of
+from fleet.logs.forces import Chassis, linearised
+from fleet.logs.grounds import LoggedRun, LogGround
+from fleet.logs.sampling import TERMS, Pieces, Rates, Samples, samples_of, trips, windows
+
+Floats = NDArray[np.float64]
+
+_ROUNDS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class LawFamily:
+    """Laws of one form, and what they are fitted to and asked on."""
+
+    name: str
+    samples: Samples
+    windows: Pieces
+    trips: Pieces
+    sums: Sums
+    laws: Sequence[Law]  # each with one more term than the one before
+    why: dict[str, str]  # terms that cannot be told apart
+
+    @property
+    def richest(self) -> Law:
+        """The law with all terms that can be told apart."""
+        return self.laws[-1]
+
+    def law(self, terms: Law, left_out: int | None = None) -> MotionLaw:
+        """The law of these terms, fitted on all runs but one."""
+        if left_out is None:
+            return self.sums.law(terms)
+        return self.sums.law(terms, (np.array(self.sums.runs) != left_out).astype(float))
+
+
+def by_motion(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> LawFamily:
+    """Laws that are linear in metres, seconds, radians, seconds of turning, and v²."""
+    samples = samples_of(ground, lag=lag, over=over)
+    cut = windows(samples)
+    terms, why = identified(cut, cut, turns=ground.turns)
+    return LawFamily(
+        "motion", samples, cut, trips(samples), sums_of(cut), nested(terms), why
+    )  # fmt: skip
+
+
+def by_forces(
+    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float = 0.0, over: float = 0.0
+) -> tuple[LawFamily, NDArray[np.float64]]:
+    """The law by forces, made linear where it fits best, and its parameters (5,).
+
+    Gauss and Newton's iteration from the law by motion; runs that are left out are left out of the
+    fit, not of the point at which the law was made linear.
+    """
+    found = start.law(start.richest)
+    scale = np.array([chassis.efficiency, 1.0, chassis.efficiency, 1.0, chassis.efficiency])
+    parameters = scale * [found[term] for term in TERMS]
+    terms, why = start.richest, start.why
+    best, least = parameters, np.inf
+    for _ in range(_ROUNDS):
+        samples = samples_of(ground, _rates_at(chassis, parameters), lag=lag, over=over)
+        cut = windows(samples)
+        terms, why = identified(cut, start.windows, turns=ground.turns)
+        error = float(((cut.terms @ parameters + cut.rest - cut.energy) ** 2).sum())
+        if error < least:
+            best, least = parameters, error
+        law = sums_of(cut).law(terms)
+        new = np.array([law[term] for term in TERMS])
+        done = np.abs(new - parameters).max() <= 1e-9 * max(1.0, float(np.abs(new).max()))
+        parameters = new if error <= least else 0.5 * (best + new)
+        if done:
+            break
+    samples = samples_of(ground, _rates_at(chassis, best), lag=lag, over=over)
+    cut = windows(samples)
+    return LawFamily(
+        "forces", samples, cut, trips(samples), sums_of(cut), [tuple(terms)], why
+    ), best  # fmt: skip
+
+
+def _rates_at(chassis: Chassis, parameters: Floats) -> Rates:
+    def rates(run: LoggedRun) -> tuple[Floats, Floats]:
+        return linearised(chassis, run.time, run.v, run.omega, parameters)
+
+    return rates

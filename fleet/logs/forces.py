@@ -1,0 +1,125 @@
+"""What a robot's wheels have to push for a recorded motion, and what that costs.
+
+The law by forces has the parameters of a simulated robot: rolling resistance F, viscous resistance
+k, scrub Q when turning, electronics, and power while turning. Wheels push against them and against
+the robot's inertia; its battery pays work over efficiency, and heat in the windings:
+
+    f = (m·a + F·sgn(w) + k·w)/2 ∓ (I·α + Q·s)/(2h),  P = c + τ + Σ [f·w]₊/η + κ·f²
+
+for wheels at speeds w = v ∓ h·ω. Scrub is full once the robot turns sharply: s is ω/(onset·|v|)
+within ± 1. Mass, track, efficiency and windings are not fitted: they are known, or a robot's
+defaults.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fleet.logs.asking import LogSettings
+from fleet.robot import RobotSpec
+
+Floats = NDArray[np.float64]
+
+_SOFT = 0.02  # [rad/s] over which scrub sets in on the spot
+_ROLLS = 1e-3  # [m/s] below which a wheel's resistance fades
+TURNS = 0.05  # [rad/s] from which a robot turns
+
+
+@dataclass(frozen=True, slots=True)
+class Chassis:
+    """What of a robot decides its wheels' forces and is not fitted."""
+
+    mass: float  # [kg]
+    inertia: float  # [kg·m²]
+    half_track: float  # [m]
+    efficiency: float = 1.0
+    windings: float = 0.0  # [W/N²]
+    scrub_onset: float = 100.0  # [rad/m]
+    regeneration: float = 0.0
+
+
+def chassis_of(settings: LogSettings) -> Chassis:
+    """The chassis of a robot that is logged; what is not told is a scenario's default."""
+    spec = RobotSpec()
+    mass = settings.mass if settings.mass is not None else spec.mass
+    track = settings.track if settings.track is not None else spec.wheel_track
+    motor = settings.motor
+    return Chassis(
+        mass=mass,
+        inertia=0.5 * mass * (0.5 * track) ** 2,
+        half_track=0.5 * track,
+        efficiency=1.0 if motor is not None else spec.efficiency,
+        windings=motor.resistance / motor.k**2 if motor is not None else spec.windings,
+        scrub_onset=spec.scrub_onset,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """One side's wheels along a motion: their speed, and what pushes against them."""
+
+    speed: Floats  # (n,) [m/s]
+    inert: Floats  # (n,) [N]
+    rolls: Floats  # (n,) of rolling resistance
+    drags: Floats  # (n,) of viscous resistance [m/s]
+    turns: Floats  # (n,) of scrub [1/m]
+
+    def force(self, parameters: Floats) -> Floats:
+        """What the wheels push with (n,) [N]."""
+        rolling, _, scrub, _, viscous = parameters
+        force: Floats = (
+            self.inert + rolling * self.rolls + viscous * self.drags + scrub * self.turns
+        )
+        return force
+
+
+def _sides(chassis: Chassis, time: Floats, v: Floats, omega: Floats) -> tuple[_Side, _Side]:
+    half = chassis.half_track
+    push = 0.5 * chassis.mass * np.gradient(v, time)
+    twist = 0.5 * chassis.inertia / half * np.gradient(omega, time)
+    soft = np.clip(omega / (_SOFT + np.abs(v) / chassis.scrub_onset), -1.0, 1.0)
+
+    def side(sign: float) -> _Side:
+        wheel = v + sign * half * omega
+        rolls = 0.5 * np.clip(wheel / _ROLLS, -1.0, 1.0)
+        return _Side(wheel, push + sign * twist, rolls, 0.5 * wheel, 0.5 * sign / half * soft)
+
+    return side(-1.0), side(1.0)
+
+
+def wheel_forces(
+    chassis: Chassis, time: Floats, v: Floats, omega: Floats, parameters: Floats
+) -> tuple[Floats, Floats]:
+    """What the left and the right wheels push with, (n,) [N] each."""
+    left, right = _sides(chassis, time, v, omega)
+    return left.force(parameters), right.force(parameters)
+
+
+def linearised(
+    chassis: Chassis, time: Floats, v: Floats, omega: Floats, parameters: Floats
+) -> tuple[Floats, Floats]:
+    """Power near ``parameters`` (5,): its derivatives (n, 5) [W per unit], and the rest (n,) [W].
+
+    Parameters in the order of :data:`fleet.logs.sampling.TERMS`: rolling F [N], constant [W], scrub
+    Q [N·m], turning [W], viscous k [N·s/m].
+    """
+    terms = np.zeros((len(v), 5))
+    rest = np.zeros(len(v))
+    terms[:, 1] = 1.0
+    terms[:, 3] = np.abs(omega) > TURNS
+    for side in _sides(chassis, time, v, omega):
+        force = side.force(parameters)
+        gain = np.where(
+            force * side.speed > 0.0,
+            1.0 / chassis.efficiency,
+            chassis.regeneration * chassis.efficiency,
+        )
+        slope = gain * side.speed + 2.0 * chassis.windings * force
+        for column, share in ((0, side.rolls), (2, side.turns), (4, side.drags)):
+            terms[:, column] += slope * share
+        power = gain * side.speed * force + chassis.windings * force**2
+        rest += power - slope * (force - side.inert)
+    return terms, rest
