@@ -70,7 +70,8 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
     radio_choice = radio_spec(scenario.radio)
     lossy = radio_choice and lossy_radio(points, scenario, radio_choice, random["radio"])
-    topology = Topology(points, scenario.range, scenario.graph)
+    live = audience.link_interval is not None  # links are asked for while robots drive
+    topology = Topology(points, scenario.range, scenario.graph, compiled=live or None)
     radio: Radio = lossy or IdealRadio(topology)
     headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
     robots = [
@@ -85,13 +86,14 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         scenario.protocol.name, scenario.motion.name, scenario.world.name,
         scenario.seed, scenario.search_radius,
     )  # fmt: skip
-    fleet = Fleet(labels, world.arena, scenario.robot, robots, topology)
+    handler = make_handler(scenario, world, random)
+    fleet = Fleet(labels, world.arena, scenario.robot, robots, topology, radio.reach, handler.field)
     return Simulation(
         fleet,
         protocol,
         radio,
         motion,
-        make_handler(scenario, world, random),
+        handler,
         make_schedule(scenario, world, len(robots), random),
         audience,
     )

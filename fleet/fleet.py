@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fleet.robot import Robot, RobotSpec
 from protocols.topology import Topology
 from worlds.arena import Arena
+from worlds.sensors import SensorField
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,3 +34,5 @@ class Fleet:
     spec: RobotSpec
     robots: Sequence[Robot]
     topology: Topology  # the true one, whatever robots believe
+    reach: NDArray[np.float64] | float  # how far robots hear one another [m]: all, or pairs (n, n)
+    field: SensorField | None = None  # of sensors that notice events

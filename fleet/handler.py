@@ -38,7 +38,7 @@ class Handler:
         self.sensor_messages = 0
         self._shares = shares
         self._choice = choice
-        self._field = field
+        self.field = field
         self._rng = rng
         self._known: list[Point] = []
 
@@ -65,11 +65,11 @@ class Handler:
         Without sensors at once, and exactly. With sensors the first report counts; of the
         others each is taken for another event with a small probability.
         """
-        if self._field is None or self._rng is None:
+        if self.field is None or self._rng is None:
             return [Notice(0.0, site)]
-        reports = self._field.detect(site, self._rng)
+        reports = self.field.detect(site, self._rng)
         self.sensor_messages += sum(report.hops for report in reports)
-        spec = self._field.spec
+        spec = self.field.spec
         reports.sort(key=lambda report: (report.hops, report.sensor))
         mistaken = self._rng.random(len(reports)) < spec.duplicates
         return [

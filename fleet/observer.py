@@ -16,8 +16,11 @@ from fleet.motion import Trip
 from protocols.messages import Award, Event, Heard, Move, RobotId, Transmission
 
 if TYPE_CHECKING:
+    from fleet.faults import Blackout, Breakdown
     from fleet.fleet import Fleet
     from fleet.results import Summary
+    from fleet.robot import Appraisal
+    from fleet.tasks import Task
 
 
 class TranscriptLine(NamedTuple):
@@ -68,7 +71,22 @@ class Observer:
         """Everybody is in place, nothing has happened yet."""
 
     def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
-        """Robots fell silent or are heard again: these can be talked to when an event is raised."""
+        """Robots fell silent or are heard again: these can be talked to from now on."""
+
+    def broke_down(self, fault: Breakdown) -> None:
+        """A robot's motor, or all of it, failed."""
+
+    def exhausted(self, robot: RobotId, time: float) -> None:
+        """A robot's battery is empty."""
+
+    def blacked_out(self, blackout: Blackout) -> None:
+        """The radio of a region falls silent."""
+
+    def lifted(self, blackout: Blackout) -> None:
+        """The radio of a region is back."""
+
+    def event_occurred(self, task: Task) -> None:
+        """Something happened at ``task.site``; robots will be told ``task.event``, or never."""
 
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """``source`` is told of the event; again, by another robot, if a trip failed."""
@@ -78,6 +96,9 @@ class Observer:
 
         Over a radio that takes no time it is all of a conversation at once, after its last.
         """
+
+    def appraised(self, event: Event, appraisals: Sequence[Appraisal], time: float) -> None:
+        """What those who were asked believed of the trip, in this order; before the award."""
 
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """A conversation has ended."""
@@ -107,7 +128,7 @@ class Observer:
         """Poses (k, 6) of the robots under way: :data:`fleet.motion.SAMPLE_FIELDS`."""
 
     def relinked(self, time: float) -> None:
-        """The topology has been brought up to date with robots that moved."""
+        """The links have been brought up to date with robots that moved."""
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """A robot came to rest: at the event, or short of it."""
@@ -136,6 +157,7 @@ class Audience(Observer):
         for observer in observers:
             _check_hooks(observer)
         self.listens = any(_overrides(o, "transmitted") for o in observers)
+        self.weighs = any(_overrides(o, "appraised") for o in observers)
         self._observers = tuple(observers)
         for hook in set(HOOKS) - {"closed"}:
             told = [getattr(o, hook) for o in observers if _overrides(o, hook)]
@@ -160,7 +182,15 @@ def _overrides(observer: Observer, hook: str) -> bool:
 
 
 def _check_hooks(observer: Observer) -> None:
-    """Raises TypeError if a public method is called nearly as a hook is: it would never be told."""
+    """Raises TypeError if a public method is called nearly as a hook is, which would never be told,
+    or a hook is hidden by something else.
+    """
+    for hook in HOOKS:
+        if not callable(found := getattr(observer, hook)):
+            raise TypeError(
+                f"{type(observer).__name__}.{hook} is a {type(found).__name__}; expected the hook"
+                " of that name, a method"
+            )
     for name in dir(observer):
         if name.startswith("_") or hasattr(Observer, name):
             continue

@@ -67,7 +67,7 @@ class Presence:
         for robot in moved if self._seen else ():
             self._seen[robot.id].position = robot.position
         if self._blackouts:
-            self._listen_anew()
+            self._listen_anew(now)
         for id in arrived:
             self._paid[id] = now
         self.stand(now)
@@ -96,47 +96,57 @@ class Presence:
                 robot.battery.drain(self._idle * (now - self._paid[robot.id]))
                 self._paid[robot.id] = now
                 if robot.battery.charge == 0.0:
-                    self.bury(robot)
+                    self.bury(robot, now)
 
-    def bury(self, robot: Robot) -> None:
+    def bury(self, robot: Robot, now: float) -> None:
         """The robot is gone: its battery is empty, or it broke down altogether."""
+        if robot.alive and robot.battery.charge == 0.0:
+            self._audience.exhausted(robot.id, now)
         robot.alive = False
         self._x[robot.id] = self._y[robot.id] = np.nan
-        self._update_air(robot)
+        self._update_air([robot], now)
         if self._true_links:
             self._fleet.topology.remove(robot.id)
 
     def black_out(self, blackout: Blackout, now: float) -> None:
         """The radio of a region falls silent."""
         self._blackouts.append(blackout)
-        self._listen_anew()
+        self._audience.blacked_out(blackout)
+        self._listen_anew(now)
 
     def lift(self, blackout: Blackout, now: float) -> None:
         """The radio of a region is back."""
         self._blackouts.remove(blackout)
-        self._listen_anew()
+        self._audience.lifted(blackout)
+        self._listen_anew(now)
 
     def nobody_nearer(self, site: Point, squared: float) -> bool:
         """Whether no living robot is nearer to ``site`` [m] than the root of ``squared``."""
         dx, dy = self._x - site[0], self._y - site[1]
         return not (dx * dx + dy * dy < squared).any()
 
-    def _listen_anew(self) -> None:
+    def _listen_anew(self, now: float) -> None:
         """Who is in a silent region, now that robots or regions have changed."""
+        changed = []
         for robot in self._fleet.robots:
             silenced = any(blackout.covers(robot.position) for blackout in self._blackouts)
             if silenced != robot.silenced:
                 robot.silenced = silenced
-                self._update_air(robot)
+                changed.append(robot)
+        self._update_air(changed, now)
 
-    def _update_air(self, robot: Robot) -> None:
-        listed = robot.id in self.on_air
-        if robot.on_air and not listed:
-            self.on_air = sorted([*self.on_air, robot.id])
-            self._radio.restore(robot)
-        elif listed and not robot.on_air:
-            self.on_air.remove(robot.id)
-            self._radio.silence(robot)
+    def _update_air(self, changed: Sequence[Robot], now: float) -> None:
+        before = self.on_air
+        for robot in changed:
+            listed = robot.id in self.on_air
+            if robot.on_air and not listed:
+                self.on_air = sorted([*self.on_air, robot.id])
+                self._radio.restore(robot)
+            elif listed and not robot.on_air:
+                self.on_air = [id for id in self.on_air if id != robot.id]
+                self._radio.silence(robot)
+        if self.on_air is not before:
+            self._audience.air_changed(self.on_air, now)
 
     def show_plans(self, now: float) -> None:
         """Tell observers where robots are going to drive."""

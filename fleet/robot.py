@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf, pi
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 from fleet.power import Battery, ExtraPower, PowerModel
 from protocols.messages import Point, RobotId
@@ -116,6 +116,15 @@ class Estimator(Protocol):
         """The energy that ``robot`` believes going to ``site`` [m] takes [J]; inf: it cannot."""
 
 
+class Appraisal(NamedTuple):
+    """What a robot believed of a trip when it was asked for."""
+
+    robot: RobotId
+    cost: float  # that it believed the trip takes [J]; inf: it could not go
+    energy: float  # that it held [J]
+    refusal: str  # why it could not go, whatever the cost; "": it could
+
+
 class Robot:
     """One robot of a running fleet. Motion moves it and drains it; protocols only ask it.
 
@@ -123,8 +132,8 @@ class Robot:
     """
 
     __slots__ = (
-        "_motion", "_tables", "able", "alive", "battery", "engaged", "failed_sites", "heading",
-        "id", "position", "radio_range", "silenced",
+        "_motion", "_tables", "able", "alive", "appraisals", "battery", "engaged",
+        "failed_sites", "heading", "id", "position", "radio_range", "silenced",
     )  # fmt: skip
 
     def __init__(
@@ -147,6 +156,7 @@ class Robot:
         self.silenced = False  # it stands where no radio works for a while
         self.engaged = False  # it is promised to an event, on its way, or at work
         self.failed_sites: set[Point] = set()  # it was sent there and did not get there
+        self.appraisals: dict[Point, dict[RobotId, Appraisal]] | None = None  # if anybody asks
         self._tables = tables
         self._motion = motion
 
@@ -167,9 +177,23 @@ class Robot:
 
     def cost_to(self, site: Point) -> float:
         """The energy it believes that going to ``site`` takes [J]; inf if it cannot go."""
-        if self.engaged or not self.able or not self.alive or site in self.failed_sites:
-            return inf
-        return self._motion.cost(self, site)
+        cost = inf
+        if not (self.engaged or not self.able or not self.alive or site in self.failed_sites):
+            cost = self._motion.cost(self, site)
+        if self.appraisals is not None:
+            appraisal = Appraisal(self.id, cost, self.energy, self._refusal(site))
+            self.appraisals.setdefault(site, {})[self.id] = appraisal
+        return cost
+
+    def _refusal(self, site: Point) -> str:
+        """Why it cannot go to ``site`` [m]; "" if it can."""
+        if self.engaged:
+            return "engaged"
+        if not self.able:
+            return "broken down"
+        if not self.alive:
+            return "out of energy"
+        return "did not get there before" if site in self.failed_sites else ""
 
 
 class SeenRobot:

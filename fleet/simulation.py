@@ -19,12 +19,12 @@ from fleet.observer import Audience
 from fleet.presence import Presence
 from fleet.radio import Radio
 from fleet.results import Summary, Tally, summarise
-from fleet.robot import Robot
+from fleet.robot import Appraisal, Robot
 from fleet.schedule import Schedule
 from fleet.service import stream_figures
 from fleet.tasks import State, Task, TaskBook
 from protocols.geometry import squared_distance
-from protocols.messages import Award, Event, Move, ProtocolFunction, RobotId
+from protocols.messages import Award, Event, Move, Point, ProtocolFunction, RobotId
 from worlds.events import Occurrence
 
 
@@ -68,7 +68,10 @@ class Simulation:
         self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
         self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
         self._over = False
-        self._told_on_air = list(self._presence.on_air)  # what observers know of it
+        appraisals: dict[Point, dict[int, Appraisal]] | None = {} if audience.weighs else None
+        for robot in fleet.robots:
+            robot.appraisals = appraisals
+        self._appraisals = appraisals
 
     def run(self) -> Summary:
         """Play to the end: of the network's life, of the rounds, or of the time."""
@@ -159,6 +162,7 @@ class Simulation:
             event = Event(len(self.book.tasks), notice.position)
             task = Task(event, site, self.now, deadline, service)
             self.book.open(task)
+            self._audience.event_occurred(task)
             if not noticed:
                 self._close(task, State.LOST, "no sensor noticed it")
             elif notice.delay:
@@ -202,9 +206,6 @@ class Simulation:
             return
         if source is None:
             source = self._handler.collector(task.event.position, on_air)
-        if on_air != self._told_on_air:
-            self._told_on_air = list(on_air)
-            self._audience.air_changed(self._told_on_air, self.now)
         self._audience.event_raised(task.event, source, self.now)
         self._talks.start(task, source, self.now)
 
@@ -219,6 +220,7 @@ class Simulation:
         if award.winner is not None:
             found = min(found, squared_distance(robots[award.winner].position, site))
         self.tally.closest += self._presence.nobody_nearer(site, found)
+        self._tell_appraisals(task)
         self._audience.awarded(task.event, award, self.now)
         winner = None if award.winner is None else robots[award.winner]
         set_off = [self._relocate(move, winner, task) for move in award.moves]
@@ -235,8 +237,15 @@ class Simulation:
     def _broken_off(self, task: Task, why: str) -> None:
         """A conversation came to no end. The handler hears nothing, and asks again."""
         if task.state is State.REPORTED:
+            self._tell_appraisals(task)
             self._audience.broken_off(task.event, why, self.now)
             self._put_off(task, why, silent=True)
+
+    def _tell_appraisals(self, task: Task) -> None:
+        """Tell observers what robots believed of the trip, and forget it."""
+        if self._appraisals is not None:
+            found = self._appraisals.pop(task.event.position, {})
+            self._audience.appraised(task.event, list(found.values()), self.now)
 
     def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
         """The task waits; in rounds, where nothing is lost on the air, life is over."""
@@ -307,7 +316,7 @@ class Simulation:
         if trip.outcome != "arrived":
             robot.failed_sites.add(trip.site)
         if robot.battery.charge == 0.0:
-            self._presence.bury(robot)
+            self._presence.bury(robot, self.now)
         if robot.id in self._relocating:
             self._relocated(robot, trip)
             return
@@ -371,10 +380,11 @@ class Simulation:
             return
         self.tally.breakdowns += 1
         robot.able = False
+        self._audience.broke_down(fault)
         if robot.id in self._trips or robot.id in self._relocating:
             self._motion.halt(robot)
         if fault.what == "all":
-            self._presence.bury(robot)
+            self._presence.bury(robot, self.now)
 
     def _summary(self, wall_time: float) -> Summary:
         timing, radio = self._schedule.timing, self._talks.radio

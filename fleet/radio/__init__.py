@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fleet.robot import Robot
 from protocols.messages import Heard, Point, RobotId, Transmission
 
@@ -31,6 +34,10 @@ class Radio(Protocol):
     @property
     def tables(self) -> Sequence[Mapping[RobotId, Point]]:
         """By robot: its neighbours in the routing graph, and where they were last known [m]."""
+
+    @property
+    def reach(self) -> NDArray[np.float64] | float:
+        """How far robots hear one another [m], if nothing is lost: all, or pair by pair (n, n)."""
 
     @property
     def beacons(self) -> int:

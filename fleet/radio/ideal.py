@@ -21,6 +21,7 @@ class IdealRadio:
 
     def __init__(self, topology: Topology) -> None:
         self._topology = topology
+        self.reach = topology.radio_range  # [m]
         self.tables: Sequence[Mapping[RobotId, Point]] = topology.neighbours
 
     def refresh(self, moved: Iterable[Robot], time: float) -> None:

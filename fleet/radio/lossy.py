@@ -13,6 +13,7 @@ from math import hypot, inf
 from typing import overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fleet.radio import BrokenProtocol, Reception
 from fleet.robot import Robot
@@ -109,6 +110,13 @@ class LossyRadio:
         self._due = spec.beacon_interval * (np.array(phases) - 1.0)
         self.tables: Sequence[Mapping[RobotId, Point]] = _Tables(self)
         self._beacon(0.0)  # everybody has said hello once before the run begins
+
+    @property
+    def reach(self) -> NDArray[np.float64] | float:
+        """How far robots hear one another [m], if nothing is lost: all, or pair by pair (n, n)."""
+        if self.spec.shadowing == 0.0:
+            return self._air.radio_range
+        return np.asarray(self._kernels.all_reaches(self._air, len(self._size)))
 
     def refresh(self, moved: Iterable[Robot], time: float) -> None:
         """Robots are where they are now; beacons up to ``time`` [s] have been sent."""

@@ -71,6 +71,16 @@ def reach(air, u, v):
 
 
 @kernel
+def all_reaches(air, n):
+    """How far each two of n robots hear one another [m]: (n, n)."""
+    found = np.zeros((n, n))
+    for u in range(n):
+        for v in range(u):
+            found[u, v] = found[v, u] = reach(air, u, v)
+    return found
+
+
+@kernel
 def farthest(air):
     """The longest that any link can be [m]."""
     return air.radio_range * 10.0 ** (2.0 * air.shadowing / (10.0 * air.path_loss))

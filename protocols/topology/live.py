@@ -83,6 +83,13 @@ class Topology:
         """The robot is off the air: nobody hears it any more."""
         self.move(robot, NOWHERE)
 
+    def changed(self) -> set[RobotId]:
+        """Robots whose neighbours, or where those are, may have changed since the last call.
+
+        The first call has no last one: it names all.
+        """
+        return self.neighbours.take_stale()
+
     def edges(self) -> Edges:
         """The edges of the routing graph as they are now."""
         listed = [(u, v) for u, near in enumerate(self.neighbours) for v in near if u < v]
@@ -103,6 +110,7 @@ class Tables(Sequence[Mapping[RobotId, Point]]):
     def __init__(self, positions: list[Point]) -> None:
         self._positions = positions
         self._listed: list[Mapping[RobotId, Point] | None] = [None] * len(positions)
+        self._stale: set[RobotId] | None = None  # until somebody asks
         self._of: Callable[[RobotId], Iterable[RobotId]] = lambda _: ()
 
     def read_from(self, neighbours_of: Callable[[RobotId], Iterable[RobotId]]) -> None:
@@ -114,6 +122,13 @@ class Tables(Sequence[Mapping[RobotId, Point]]):
         listed = self._listed
         for robot in robots:
             listed[robot] = None
+        if self._stale is not None:
+            self._stale.update(robots)
+
+    def take_stale(self) -> set[RobotId]:
+        """Those forgotten since the last call; at first, all."""
+        stale, self._stale = self._stale, set()
+        return set(range(len(self._listed))) if stale is None else stale
 
     @overload
     def __getitem__(self, robot: int) -> Mapping[RobotId, Point]: ...

@@ -131,7 +131,108 @@ def test_a_misspelt_hook_is_told_with_the_one_that_was_meant(name, meant):
         Audience([observer])
 
 
+def test_a_hook_that_is_hidden_by_what_an_observer_keeps_is_told():
+    observer = Observer()
+    observer.awarded = {}
+    with pytest.raises(TypeError, match=r"Observer.awarded is a dict; .* hook"):
+        Audience([observer])
+
+
 def test_methods_of_an_observers_own_and_what_it_keeps_are_left_alone():
     observer = type("Mine", (Observer,), {"totals": lambda *_: None, "_award": lambda *_: None})()
     observer.awards = []
     Audience([observer])
+
+
+class Sees(Observer):
+    """Keeps what goes wrong, and what robots believed."""
+
+    def __init__(self):
+        self.faults, self.air, self.occurred, self.beliefs = [], [], [], {}
+
+    def broke_down(self, fault):
+        self.faults.append((fault.time, fault.what, fault.robot))
+
+    def exhausted(self, robot, time):
+        self.faults.append((time, "exhausted", robot))
+
+    def blacked_out(self, blackout):
+        self.faults.append((blackout.start, "blacked out", None))
+
+    def lifted(self, blackout):
+        self.faults.append((blackout.end, "lifted", None))
+
+    def air_changed(self, on_air, time):
+        self.air.append((time, list(on_air)))
+
+    def event_occurred(self, task):
+        self.occurred.append(task)
+
+    def appraised(self, event, appraisals, time):
+        self.beliefs.setdefault(event.id, []).extend(appraisals)
+
+
+FAULTY = {
+    "motion": "straight", "robots": 20, "range": 4.0, "seed": 3,
+    "time": {"name": "stream", "rate": 0.2, "duration": 60.0},
+    "faults": {
+        "planned": [
+            {"time": 10.0, "robot": 2, "what": "motor"}, {"time": 20.0, "robot": 3, "what": "all"}
+        ],
+        "blackouts": [{"start": 30.0, "duration": 5.0, "x": 5.0, "y": 5.0, "radius": 20.0}],
+    },
+}  # fmt: skip
+
+
+def test_faults_are_told_when_they_happen():
+    sees = Sees()
+    fleet.run(fleet.Scenario.of(**FAULTY), [sees])
+    planned = [
+        (10.0, "motor", 2), (20.0, "all", 3), (30.0, "blacked out", None), (35.0, "lifted", None)
+    ]  # fmt: skip
+    assert [fault for fault in sees.faults if fault[1] != "exhausted"] == planned
+    spent = {(time, robot) for time, what, robot in sees.faults if what == "exhausted"}
+    on_air = set(range(20))
+    for time, now in sees.air:
+        gone, back = on_air - set(now), set(now) - on_air
+        if time == 20.0:
+            assert gone == {3}
+        elif time == 30.0:
+            assert not now
+        elif time == 35.0:
+            assert not gone
+        else:
+            assert gone == {robot for at, robot in spent if at == time}
+        assert bool(back) == (time == 35.0)
+        on_air = set(now)
+
+
+@pytest.mark.parametrize("protocol", ["rfta2", "rfta2ge", "bfs", "optimum", "rfta3"])
+def test_what_robots_believed_is_what_decided(protocol):
+    class Checks(Sees):
+        def awarded(self, event, award, time):
+            believed = {a.robot: a for a in self.beliefs[event.id]}
+            for bid in award.bids:
+                assert believed[bid.robot].cost <= believed[bid.robot].energy
+                assert not believed[bid.robot].refusal
+            if protocol == "rfta2":
+                for bid in award.bids:
+                    mine = believed[bid.robot]
+                    assert bid.cost == mine.cost - mine.energy
+
+    checks = Checks()
+    scenario = fleet.Scenario.of(motion="straight", protocol=protocol, rounds=8, seed=5)
+    fleet.run(scenario, [checks])
+    assert len(checks.beliefs) >= 8
+    assert [task.event.id for task in checks.occurred] == [*range(len(checks.occurred))]
+
+
+def test_nothing_is_kept_of_what_robots_believe_if_nobody_asks():
+    class Peeks(Observer):
+        def awarded(self, event, award, time):
+            assert all(robot.appraisals is None for robot in self.fleet.robots)
+
+        def run_started(self, fleet):
+            self.fleet = fleet
+
+    fleet.run(fleet.Scenario.of(motion="straight", rounds=2), [Peeks()])
