@@ -33,8 +33,9 @@ from fleet.observer import Observer
 from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
 from protocols.compiled import kernel
-from worlds.arena import Arena, scatter
+from worlds.arena import Arena
 from worlds.catalogue import WORLDS
+from worlds.scattering import scatter
 
 
 class Work(Observer):

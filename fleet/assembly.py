@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 from math import inf, pi
 
 import numpy as np
 
+from fleet.faults import Blackout
 from fleet.fleet import Fleet, RunLabels
 from fleet.handler import Handler
 from fleet.modes import Stream
 from fleet.motion.motions import MOTIONS
 from fleet.observer import Audience, Observer
+from fleet.placement import start
 from fleet.power import Battery
 from fleet.radio import Radio
 from fleet.radio.ideal import IdealRadio
@@ -32,16 +35,15 @@ from fleet.scenario.model import Scenario
 from fleet.schedule import Schedule
 from fleet.simulation import Simulation
 from protocols.messages import Point
-from protocols.topology import Topology, connected, unit_disc
-from worlds.arena import FloatArray, ImpossibleWorld
+from protocols.topology import Topology
 from worlds.catalogue import World
+from worlds.events import Occurrence
+from worlds.ground import Ground, ground_of
 from worlds.sensors import deploy
+from worlds.shapes import Corner
 
 STREAMS = ("placement", "sites", "collector", "heading", "times", "radio", "faults", "sensors")
 """Independent random streams of a run. Append only: the order decides every run."""
-
-ATTEMPTS = 2000  # placements drawn in search of a connected network
-MOST_LINKS = 20_000_000  # twice the unit disc links that fit into memory and patience
 
 
 def run(scenario: Scenario, observers: Sequence[Observer] = ()) -> Summary:
@@ -67,7 +69,10 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     audience = Audience(observers)
     motion = make_motion(scenario.motion, scenario.robot, world.arena, audience.sample_interval)
     solid = MOTIONS[scenario.motion.name].solid
-    points = start(world, scenario, scenario.robot.radius if solid else 0.0, random["placement"])
+    ground = ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
+    for said in filter(None, (*world.notices, ground.notice())):
+        audience.noticed(said)
+    points = start(world, ground, scenario, random["placement"], audience.placement_tried)
     radio_choice = radio_spec(scenario.radio)
     lossy = radio_choice and lossy_radio(points, scenario, radio_choice, random["radio"])
     live = audience.link_interval is not None  # links are asked for while robots drive
@@ -94,13 +99,17 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         radio,
         motion,
         handler,
-        make_schedule(scenario, world, len(robots), random),
+        make_schedule(scenario, ground, len(robots), random, audience.noticed),
         audience,
     )
 
 
 def make_schedule(
-    scenario: Scenario, world: World, robots: int, random: Mapping[str, np.random.Generator]
+    scenario: Scenario,
+    ground: Ground,
+    robots: int,
+    random: Mapping[str, np.random.Generator],
+    noticed: Callable[[str], None] = lambda _said: None,
 ) -> Schedule:
     """What will befall the fleet."""
     timing = make_timing(scenario.time)
@@ -109,19 +118,52 @@ def make_schedule(
             raise bad("faults.planned", f"robot is {fault.robot}; expected 0 to {robots - 1}")
     rate = timing.rate if isinstance(timing, Stream) else inf
     try:
-        occurrences = bind_events(scenario.events)(
-            world.arena, rate, random["sites"], random["times"]
-        )
+        occurrences = bind_events(scenario.events)(ground, rate, random["sites"], random["times"])
         first = next(occurrences, None)  # what an event process refuses, it refuses here
     except ValueError as error:
-        raise bad("events", str(error)) from error
+        raise bad("events", f"{_file_of(scenario)}{error}") from error
+    last = timing.duration if isinstance(timing, Stream) else inf
+    if first is not None and scenario.events.name == "trace":
+        occurrences = _within(last, [first, *occurrences], scenario, noticed)
+        first = next(occurrences)
     return Schedule(
         timing,
         iter(()) if first is None else chain([first], occurrences),
         tuple(scenario.faults.breakdowns(robots, random["faults"])),
-        scenario.faults.blackouts,
+        [_moved(blackout, ground.arena.corner) for blackout in scenario.faults.blackouts],
         scenario.rounds,
     )
+
+
+def _moved(blackout: Blackout, corner: Corner) -> Blackout:
+    """The same in the frame of the floor, of which the map's has its lower left ``corner`` [m]."""
+    return replace(blackout, x=blackout.x - corner[0], y=blackout.y - corner[1])
+
+
+def _within(
+    last: float, listed: list[Occurrence], scenario: Scenario, noticed: Callable[[str], None]
+) -> Iterator[Occurrence]:
+    """The events of a trace that happen up to ``last`` [s]; it is said how many are not."""
+    kept = [occurrence for occurrence in listed if occurrence.time <= last]
+    count, file = len(listed) - len(kept), _file_of(scenario)
+    if not kept:
+        raise bad(
+            "events",
+            f"{file}none of {count} events happens within time.duration = {last:g} s;"
+            f" the first is at {listed[0].time:g} s",
+        )
+    if count:
+        noticed(
+            f"{file}{count} of {len(listed)} events happen after time.duration = {last:g} s"
+            f" and are left out"
+        )
+    return iter(kept)
+
+
+def _file_of(scenario: Scenario) -> str:
+    """The file of the user's that the events come from, to begin a sentence with."""
+    file = scenario.events.parameters.get("occurrences")
+    return f"{file}: " if isinstance(file, str) else ""
 
 
 def make_handler(
@@ -150,32 +192,6 @@ def streams(seed: int) -> dict[str, np.random.Generator]:
     """One generator for each purpose, all spawned from the run's one seed."""
     children = np.random.SeedSequence(seed).spawn(len(STREAMS))
     return dict(zip(STREAMS, map(np.random.default_rng, children), strict=True))
-
-
-def start(world: World, scenario: Scenario, radius: float, rng: np.random.Generator) -> list[Point]:
-    """Places [m] for the scenario's robots, of ``radius`` [m] each, that make one network.
-
-    Raises:
-        ImpossibleWorld: none of :data:`ATTEMPTS` placements was connected, where it must be.
-    """
-    count = scenario.robots or world.robots
-    degree = count * pi * scenario.range**2 / (world.arena.width * world.arena.height)
-    if count * min(degree, count) > MOST_LINKS:
-        raise ImpossibleWorld(
-            f"robots is {count}; {min(degree, count):.0f} of them within range of each"
-            f" are too many links to keep; expected fewer robots or a shorter range"
-        )
-    attempts = 1 if world.fixed else ATTEMPTS
-    for _ in range(attempts):
-        positions: FloatArray = world.place(world.arena, count, radius, rng)
-        if not scenario.connected or connected(count, unit_disc(positions, scenario.range)):
-            return [(x, y) for x, y in positions.tolist()]
-    placements = "the placement" if world.fixed else f"none of {attempts} placements"
-    verb = "is not" if world.fixed else "made"
-    raise ImpossibleWorld(
-        f"range is {scenario.range} m; {placements} of {count} robots {verb} a connected network;"
-        f" expected a longer range, more robots, or connected = false"
-    )
 
 
 def uniform_shares(rng: np.random.Generator) -> Iterator[float]:

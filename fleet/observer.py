@@ -67,6 +67,12 @@ class Observer:
     sample_interval: float | None = None  # [s] between poses of a moving robot
     link_interval: float | None = None  # [s] between updates of the links while robots drive
 
+    def noticed(self, said: str) -> None:
+        """Something about the scenario that its author may want to know, in a sentence."""
+
+    def placement_tried(self, tried: int, most: int) -> None:
+        """Starting places were drawn and make no network: so often, of so many times at most."""
+
     def run_started(self, fleet: Fleet) -> None:
         """Everybody is in place, nothing has happened yet."""
 

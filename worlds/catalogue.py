@@ -10,11 +10,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from worlds import events
-from worlds.arena import Arena, FloatArray, given, scatter
+from worlds.arena import Arena, FloatArray
 from worlds.events import Occurrence
 from worlds.obstacles import round_pit, scatter_through, shelves, walls
 from worlds.occupancy import OccupancyGrid, obstacles
-from worlds.shapes import Corner, Disc, Polygon, square
+from worlds.scattering import given, scatter
+from worlds.shapes import Corner, Disc, PlaceTable, Polygon, square
 
 PAPER = "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"
 
@@ -27,6 +28,8 @@ class World:
     place: Callable[[Arena, int, float, np.random.Generator], FloatArray] = scatter
     robots: int = 100  # unless the scenario asks for another number
     fixed: bool = False  # whether the robots start in the same places every time
+    start: Corner | None = None  # a place in the area that robots start in [m]; None: the largest
+    notices: tuple[str, ...] = ()  # what its author may want to know
 
 
 class Entry(NamedTuple):
@@ -39,7 +42,7 @@ class Entry(NamedTuple):
 class EventsEntry(NamedTuple):
     """An event process, its parameters by keyword, and where it comes from."""
 
-    function: Callable[..., Iterator[Occurrence]]  # arena, rate, generators of places and times
+    function: Callable[..., Iterator[Occurrence]]  # ground, rate, generators of places and times
     source: str
 
 
@@ -146,32 +149,59 @@ def occupancy_map(
     file: OccupancyGrid,
     unknown: Literal["occupied", "free"] = "occupied",
     tolerance: float | None = None,
+    start: Corner | None = None,
+    positions: PlaceTable | None = None,
+    cell: float | None = None,
 ) -> World:
-    """The floor of an occupancy map: a YAML file, and the image that it names.
+    """The floor of an occupancy map: a YAML file and the image that it names, or a MovingAI file.
 
-    ``file`` is as of ROS's map_server. ``unknown`` cells count as occupied, or as free; free
-    cells that are cut off from the largest free area count as occupied. Occupied cells become
-    polygons, which are larger by up to ``tolerance`` [m], one cell if it is not given: slanting
-    walls have fewer corners then. No way through opens, but doors may be narrower by twice as
-    much. The arena's (0, 0) is the lower left corner of the image. Radio passes walls.
+    ``file`` is as of ROS's map_server, or of the MovingAI benchmarks (``.map``), whose cells have
+    sides of ``cell`` [m], 1 m if it is not given. ``unknown`` cells count as occupied, or as free.
+    Occupied cells become polygons, which are larger by up to ``tolerance`` [m], one cell if it is
+    not given: slanting walls have fewer corners then. No way through opens, but doors may be
+    narrower by twice as much. Robots start in the largest area that they can drive in, or in the
+    one around ``start``; or at ``positions``. All positions of the user's are in the frame of
+    the map, as its origin says. Radio passes walls.
     """
-    return World(Arena(file.width, file.height, obstacles=obstacles(file, unknown, tolerance)))
+    if cell is not None:
+        if file.resolution != 1.0 or file.corner != (0.0, 0.0):
+            raise ValueError(f"cell is {cell} m, but the file says how large its cells are")
+        file = OccupancyGrid(file.cells, cell)
+    left, low = file.corner
+    if positions is not None:
+        positions = positions * (cell or 1.0) - np.array(file.corner)
+        _check_inside(positions, file.width, file.height, file.corner)
+        start = start or (float(positions[0, 0]) + left, float(positions[0, 1]) + low)
+    at = None if start is None else (start[0] - left, start[1] - low)
+    standing = obstacles(file, unknown, tolerance, at)
+    arena = Arena(file.width, file.height, obstacles=standing, corner=file.corner)
+    if positions is None:
+        return World(arena, partial(scatter, start=at), start=at, notices=file.notices)
+    place = partial(given, positions, start=at)
+    return World(arena, place, len(positions), True, at, file.notices)
 
 
-def placed(*, positions: FloatArray, width: float = 10.0, height: float = 10.0) -> World:
+def placed(*, positions: PlaceTable, width: float = 10.0, height: float = 10.0) -> World:
     """Robots start where a CSV file (columns x, y in metres) puts them; events fall anywhere."""
-    if positions.shape[1] != 2:
-        raise ValueError(f"positions have {positions.shape[1]} columns; expected x and y")
+    _check_inside(positions, width, height)
     arena = Arena(width, height)
-    inside = (positions >= 0.0) & (positions <= np.array([width, height]))
-    if not inside.all():
-        row = int(np.argmin(inside.all(axis=1)))
-        x, y = positions[row].tolist()
-        raise ValueError(
-            f"robot {row} starts at ({x}, {y});"
-            f" expected a place in the {width} m × {height} m arena"
-        )
     return World(arena, partial(given, positions), robots=len(positions), fixed=True)
+
+
+def _check_inside(
+    positions: FloatArray, width: float, height: float, corner: Corner = (0.0, 0.0)
+) -> None:
+    """Refuse places (n, 2) [m] that are not on the floor, or that are no places."""
+    if positions.ndim != 2 or positions.shape[1] != 2:
+        raise ValueError(f"positions have {positions.shape[-1]} columns; expected x and y")
+    inside = ((positions >= 0.0) & (positions <= np.array([width, height]))).all(axis=1)
+    if not inside.all():
+        robot = int(np.argmin(inside))
+        x, y = (positions[robot] + np.array(corner)).tolist()
+        raise ValueError(
+            f"robot {robot} starts at ({x:g}, {y:g});"
+            f" expected a place in the {width:g} m × {height:g} m arena"
+        )
 
 
 WORLDS: dict[str, Entry] = {

@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from itertools import count
 from math import inf
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from worlds.arena import Arena, FloatArray, ImpossibleWorld
-from worlds.shapes import Corner
+from worlds.arena import FloatArray, ImpossibleWorld
+from worlds.ground import Ground
+from worlds.shapes import Corner, EventTable
 
 BLOCK = 256  # places and gaps drawn at a time
+BARREN = 1000  # so many blocks without a place: there is none
 
 
 class Occurrence(NamedTuple):
@@ -29,21 +31,21 @@ class Occurrence(NamedTuple):
 
 
 Events: TypeAlias = Callable[
-    [Arena, float, np.random.Generator, np.random.Generator], Iterator[Occurrence]
+    [Ground, float, np.random.Generator, np.random.Generator], Iterator[Occurrence]
 ]
-"""Arena, mean rate [1/s], generator of places, generator of times."""
+"""The robots' ground, mean rate [1/s], generator of places, generator of times."""
 
 
 def uniform(
-    arena: Arena, rate: float, places: np.random.Generator, times: np.random.Generator
+    ground: Ground, rate: float, places: np.random.Generator, times: np.random.Generator
 ) -> Iterator[Occurrence]:
     """Anywhere on the floor, hole included; in a stream as a Poisson process."""
-    for time, site in zip(poisson_times(rate, times), uniform_sites(arena, places), strict=False):
+    for time, site in zip(poisson_times(rate, times), uniform_sites(ground, places), strict=False):
         yield Occurrence(time, site)
 
 
 def hot_spots(
-    arena: Arena,
+    ground: Ground,
     rate: float,
     places: np.random.Generator,
     times: np.random.Generator,
@@ -58,18 +60,18 @@ def hot_spots(
             f"hot spots: spots {spots}, spread {spread} m, share {share};"
             f" expected at least 1, more than 0, and 0 to 1"
         )
-    background = uniform_sites(arena, places)
+    background = uniform_sites(ground, places)
     centres = [next(background) for _ in range(spots)]
     for time in poisson_times(rate, times):
         if times.random() < share:
             centre = centres[int(times.integers(spots))]
-            yield Occurrence(time, _near(arena, centre, spread, background, places))
+            yield Occurrence(time, _near(ground, centre, spread, background, places))
         else:
             yield Occurrence(time, next(background))
 
 
 def bursts(
-    arena: Arena,
+    ground: Ground,
     rate: float,
     places: np.random.Generator,
     times: np.random.Generator,
@@ -84,40 +86,61 @@ def bursts(
             f"bursts: size {size}, spacing {spacing} s, spread {spread} m;"
             f" expected at least 1, at least 0, and more than 0"
         )
-    background = uniform_sites(arena, places)
+    background = uniform_sites(ground, places)
     last = 0.0
     for start in poisson_times(rate / size, times):
         time, centre = max(start, last), next(background)
         for _ in range(int(times.geometric(1.0 / size))):
-            yield Occurrence(time, _near(arena, centre, spread, background, places))
+            yield Occurrence(time, _near(ground, centre, spread, background, places))
             last = time
             time += float(times.exponential(spacing)) if spacing else 0.0
 
 
 def trace(
-    arena: Arena,
-    _rate: float,
+    ground: Ground,
+    rate: float,
     _places: np.random.Generator,
     _times: np.random.Generator,
     *,
-    occurrences: FloatArray,
+    occurrences: EventTable,
+    scale: float = 1.0,
 ) -> Iterator[Occurrence]:
-    """The events of a CSV file: columns time [s], x, y [m], and, if wanted, service, deadline."""
+    """The events of a file: time [s], x, y [m], service and deadline [s], all but x, y if wanted.
+
+    Without times they come evenly, at the mean rate. ``scale``: x and y are in units of so many
+    metres.
+    """
     if not 3 <= occurrences.shape[1] <= 5:
         raise ValueError(
             f"a trace of {occurrences.shape[1]} columns; expected time, x, y, service, deadline"
         )
-    past = np.flatnonzero(occurrences[:, 0] < 0.0)
-    if len(past):
-        raise ValueError(f"an event happens at {occurrences[past[0], 0]} s; expected 0 or more")
-    size = np.array([arena.width, arena.height])
-    outside = ((occurrences[:, 1:3] < 0.0) | (occurrences[:, 1:3] > size)).any(axis=1)
-    if outside.any():
-        row = occurrences[int(np.argmax(outside))].tolist()
-        raise ValueError(f"the event at ({row[1]}, {row[2]}) lies outside the arena")
-    for row in occurrences[np.argsort(occurrences[:, 0], kind="stable")].tolist():
-        extra = [None if value != value else value for value in row[3:5]]  # noqa: PLR0124  # NaN
-        yield Occurrence(row[0], (row[1], row[2]), *extra)
+    if not 0.0 < scale < inf:
+        raise ValueError(f"scale is {scale}; expected more than 0")
+    times, positions = occurrences[:, 0], scale * occurrences[:, 1:3] - ground.arena.corner
+    if np.isnan(times).all():
+        times = np.arange(len(times)) / rate if 0.0 < rate < inf else np.zeros(len(times))
+    _refuse(~np.isfinite(times), occurrences, "has no time; expected one in all rows, or in none")
+    _refuse(times < 0.0, occurrences, "happens at {time:g} s; expected 0 or more")
+    _refuse(~np.isfinite(positions).all(axis=1), occurrences, "is nowhere; expected x and y")
+    size = np.array([ground.arena.width, ground.arena.height])
+    outside = ((positions < 0.0) | (positions > size)).any(axis=1)
+    _refuse(outside, occurrences, "lies outside the arena")
+    _refuse(ground.buried(positions), occurrences, "lies in a wall or another obstacle")
+    lost = f"is where no robot of radius {ground.radius:g} m gets to from the others"
+    _refuse(~ground.serves(positions), occurrences, lost)
+    for row in np.argsort(times, kind="stable").tolist():
+        x, y = positions[row].tolist()
+        extra = [None if np.isnan(value) else float(value) for value in occurrences[row, 3:5]]
+        yield Occurrence(float(times[row]), (x, y), *extra)
+
+
+def _refuse(which: Any, table: FloatArray, why: str) -> None:
+    """Raise a ValueError about the first of the rows of a trace that are meant."""
+    if which.any():
+        row = int(np.argmax(which))
+        time, x, y = table[row, :3].tolist()
+        said = why.format(time=time)
+        raise ValueError(f"row {row + 1}: the event at ({x:g}, {y:g}) {said}")
 
 
 def poisson_times(rate: float, rng: np.random.Generator) -> Iterator[float]:
@@ -131,20 +154,23 @@ def poisson_times(rate: float, rng: np.random.Generator) -> Iterator[float]:
             yield time
 
 
-def uniform_sites(arena: Arena, rng: np.random.Generator) -> Iterator[Corner]:
-    """Sites [m] without end, uniform over the floor, the hole included, obstacles not."""
+def uniform_sites(ground: Ground, rng: np.random.Generator) -> Iterator[Corner]:
+    """Sites [m] without end, uniform over the ground: the hole included, obstacles not."""
     barren = 0
     while True:
-        drawn = arena.random_points(BLOCK, 0.0, rng)
-        free = arena.is_free(drawn)
+        drawn = ground.arena.random_points(BLOCK, 0.0, rng)
+        free = ground.holds(drawn)
         barren = 0 if free.any() else barren + 1
-        if barren > 100:
-            raise ImpossibleWorld("the obstacles cover the whole arena; expected some free floor")
+        if barren > BARREN:
+            raise ImpossibleWorld(
+                f"robots of radius {ground.radius:g} m get to too small a part of the floor:"
+                f" {ground.area:.3g} m²; expected room for events"
+            )
         yield from map(tuple, drawn[free].tolist())
 
 
 def _near(
-    arena: Arena,
+    ground: Ground,
     centre: Corner,
     spread: float,
     background: Iterator[Corner],
@@ -152,8 +178,8 @@ def _near(
 ) -> Corner:
     """A free place on the floor around a centre; anywhere, should there be none."""
     drawn = np.array(centre) + rng.normal(0.0, spread, (32, 2))
-    inside = ((drawn >= 0.0) & (drawn <= [arena.width, arena.height])).all(axis=1)
-    free = drawn[inside & arena.is_free(drawn)]
+    inside = ((drawn >= 0.0) & (drawn <= [ground.arena.width, ground.arena.height])).all(axis=1)
+    free = drawn[inside & ground.holds(drawn)]
     if not len(free):
         return next(background)
     x, y = free[0].tolist()

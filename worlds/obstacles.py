@@ -10,8 +10,9 @@ from math import cos, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from worlds.arena import Arena, FloatArray, ImpossibleWorld, scatter
+from worlds.arena import Arena, FloatArray, ImpossibleWorld
 from worlds.outlines import polygons
+from worlds.scattering import scatter
 from worlds.shapes import Polygon
 
 ROOM = 0.01  # [m] that a robot needs beside its own width
@@ -70,7 +71,7 @@ def scatter_through(
     radius: float,
     rng: np.random.Generator,
 ) -> FloatArray:
-    """As :func:`worlds.arena.scatter`, if robots of ``radius`` [m] fit through every passage.
+    """As :func:`worlds.scattering.scatter`, if robots of ``radius`` [m] fit through every passage.
 
     Raises:
         ImpossibleWorld: they do not, or they do not all find a place.

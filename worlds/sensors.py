@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from worlds.arena import Arena, FloatArray, ImpossibleWorld
+from worlds.ground import ground_of
 from worlds.shapes import Corner
 
 
@@ -93,10 +94,10 @@ def deploy(arena: Arena, spec: SensorSpec, rng: np.random.Generator) -> SensorFi
     from scipy.sparse.csgraph import breadth_first_order
     from scipy.spatial import cKDTree
 
-    positions = np.empty((0, 2))
+    positions, ground = np.empty((0, 2)), ground_of(arena, 0.0)
     while len(positions) < spec.count:
         drawn = arena.random_points(spec.count, 0.0, rng)
-        positions = np.vstack([positions, drawn[arena.is_free(drawn)]])[: spec.count]
+        positions = np.vstack([positions, drawn[ground.holds(drawn)]])[: spec.count]
     pairs = cKDTree(positions).query_pairs(spec.radio_range, output_type="ndarray")
     links = coo_array(
         (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(spec.count, spec.count)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Annotated, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Corner: TypeAlias = tuple[float, float]  # [m]
+PlaceTable: TypeAlias = Annotated[FloatArray, ("x", "y")]
+"""Places (n, 2) [m], from a file whose columns have these names."""
+EventTable: TypeAlias = Annotated[FloatArray, ("time", "x", "y", "service", "deadline")]
+"""Events (n, 3 to 5) [s, m, m, s, s], the same; NaN: the file does not say."""
 
 
 class Shape(Protocol):

@@ -9,7 +9,7 @@ import numpy as np
 
 Loop: TypeAlias = list[tuple[float, float]]  # corners; clockwise around something free
 
-HAIRLINE = 0.05  # half the width of a slit, at most; in the loops' unit
+HAIRLINE = 0.002  # half the width of a slit, at most; in the loops' unit
 
 
 class _Crossing(NamedTuple):

@@ -30,6 +30,11 @@ class RunProgress(Observer):
         self._task = self._bar.add_task(ready, total=None, state="")
         self._bar.start()
 
+    def placement_tried(self, tried: int, most: int) -> None:
+        """Say that starting places are drawn again and again."""
+        said = "drawing starting places that make one network"
+        self._bar.update(self._task, description=said, state=f"{tried} of {most} at most")
+
     def run_started(self, fleet: Fleet) -> None:
         """Everybody is in place."""
         self._fleet = fleet

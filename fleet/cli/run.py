@@ -61,12 +61,16 @@ def command(
 
             writer = stack.enter_context(WriterProcess())  # it gets ready while we do
         from fleet.assembly import run
+        from fleet.cli.notices import Notices
         from fleet.cli.progress import RunProgress
         from fleet.cli.summary import print_summary
         from fleet.scenario.loading import load_scenario
 
         loaded = load_scenario(scenario, given, settings)
-        observers: list[Observer] = [RunProgress(loaded.rounds)] if sys.stderr.isatty() else []
+        observers: list[Observer] = [Notices()]
+        if sys.stderr.isatty():
+            observers.append(progress := RunProgress(loaded.rounds))
+            stack.callback(progress.closed)  # also if the run is refused
         if writer is not None:
             from fleet.replay import recorder
 

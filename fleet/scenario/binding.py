@@ -14,15 +14,16 @@ from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
+from fleet.scenario.delimited import numbers
+from fleet.scenario.delimited import numbers
 from fleet.scenario.errors import BadInput, bad, or_list, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.model import Scenario
-from fleet.scenario.numbers import numbers
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
 from protocols.metrics import Metric
 from worlds.occupancy import OccupancyGrid
-from worlds.shapes import FloatArray
+from worlds.shapes import EventTable, PlaceTable
 
 T = TypeVar("T")
 MOST = 1e12  # of any number: nothing of a fleet is larger, and its square is still a number
@@ -82,8 +83,8 @@ def convert(kind: Any, value: Any, key: str) -> Any:
     """
     if kind == Metric:
         return metric(value, key)
-    if kind == FloatArray:
-        return numbers(value, key)
+    if (columns := _columns(kind)) is not None:
+        return numbers(value, columns, key)
     if kind is OccupancyGrid:
         return occupancy_grid(value, key)
     problems = [*unusable(value, key), *_unknown_keys(kind, value, key)]
@@ -99,6 +100,16 @@ def convert(kind: Any, value: Any, key: str) -> Any:
                 for e in error.errors(include_url=False)
             ]
     raise BadInput(problems)
+
+
+@cache
+def _columns(kind: Any) -> tuple[str, ...] | None:
+    """The columns of a table of numbers, or of one that may be left out; None: it is none."""
+    for table in (PlaceTable, EventTable):
+        if kind == table or kind == table | None:
+            columns: tuple[str, ...] = get_args(table)[1]
+            return columns
+    return None
 
 
 @cache

@@ -10,7 +10,7 @@ from typing import Any
 
 from worlds.catalogue import EVENTS, WORLDS
 from worlds.occupancy import OccupancyGrid
-from worlds.shapes import FloatArray
+from worlds.shapes import EventTable, PlaceTable
 
 OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
 """The keys that may hold ``file.py:name``."""
@@ -25,7 +25,7 @@ def path_keys() -> frozenset[str]:
         for entry in catalogue.values()
         for parameter in inspect.signature(entry.function, eval_str=True).parameters.values()
         if parameter.kind is parameter.KEYWORD_ONLY
-        and parameter.annotation in (FloatArray, OccupancyGrid)
+        and parameter.annotation in (PlaceTable, PlaceTable | None, EventTable, OccupancyGrid)
     )
 
 
@@ -41,5 +41,5 @@ def anchored(value: Any, folder: Path, key: str = "") -> Any:
     if isinstance(value, list):
         return [anchored(item, folder, key) for item in value]
     if isinstance(value, str) and (key in path_keys() or (key in OBJECTS and ".py" in value)):
-        return str(folder / value)
+        return value if value.startswith("~") else str(folder / value)
     return value

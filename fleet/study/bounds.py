@@ -11,10 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.assembly import make_schedule, start, streams
+from fleet.assembly import make_schedule, streams
+from fleet.placement import start
 from fleet.scenario.choices import make_world
 from fleet.scenario.model import Scenario
 from fleet.schedule import Schedule
+from worlds.ground import ground_of
 
 SITES = 2000  # events looked at to tell how far the nearest robot is, and more if they last
 
@@ -42,8 +44,9 @@ def bounds(scenario: Scenario) -> Bounds:
     """
     random = streams(scenario.seed)
     world = make_world(scenario.world)
-    starts = np.array(start(world, scenario, 0.0, random["placement"]))
-    schedule = make_schedule(scenario, world, len(starts), random)
+    ground = ground_of(world.arena, 0.0, world.start)
+    starts = np.array(start(world, ground, scenario, random["placement"]))
+    schedule = make_schedule(scenario, ground, len(starts), random)
     sites = _next_sites(schedule, SITES)
     spec = scenario.robot
     reach = spec.capacity * len(starts) / spec.power.per_metre(spec.cruise)  # [m], of them all

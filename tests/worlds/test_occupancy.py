@@ -7,7 +7,8 @@ import pytest
 
 from worlds.arena import ImpossibleWorld
 from worlds.catalogue import occupancy_map
-from worlds.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, largest_area
+from worlds.ground import ground_of
+from worlds.occupancy import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, large_areas
 
 
 def grid(text, resolution=0.5):
@@ -18,7 +19,7 @@ def grid(text, resolution=0.5):
 
 
 def free_at(world, *points):
-    return world.arena.is_free(np.array(points)).tolist()
+    return ground_of(world.arena, 0.0, world.start).holds(np.array(points)).tolist()
 
 
 def test_the_floor_has_the_map_s_size_and_its_lower_row_first():
@@ -38,11 +39,34 @@ def test_a_room_without_a_door_counts_as_occupied():
     assert free_at(world, (0.25, 0.75), (1.75, 0.75)) == [False, True]
 
 
-def test_areas_that_touch_at_a_corner_are_apart():
-    area = largest_area(np.array([[1, 1, 0], [1, 0, 0], [0, 0, 1]], bool))
-    assert area.sum() == 3
-    assert not area[2, 2]
-    assert not largest_area(np.zeros((2, 2), bool)).any()
+def test_small_areas_are_filled_and_touching_at_a_corner_does_not_join():
+    blocks = np.kron(np.array([[1, 1, 0], [1, 0, 0], [0, 0, 1]]), np.ones((9, 9), int)) > 0
+    blocks[13, 13] = True
+    kept = large_areas(blocks)
+    assert kept.sum() == 4 * 81
+    assert not kept[13, 13]
+    assert large_areas(blocks, (13, 13))[13, 13]
+    assert not large_areas(np.zeros((2, 2), bool)).any()
+
+
+def test_a_place_picks_the_area():
+    drawn = grid(".#... .#... .#...")
+    assert free_at(occupancy_map(file=drawn, start=(0.2, 0.7)), (0.25, 0.75), (1.75, 0.75)) == [
+        True,
+        False,
+    ]
+
+
+def test_positions_are_in_the_frame_of_the_map():
+    drawn = OccupancyGrid(np.zeros((20, 20), np.int8), 0.5, corner=(-5.0, -3.0))
+    world = occupancy_map(file=drawn, positions=np.array([[-4.0, -2.0], [4.0, 6.0]]))
+    rng = np.random.default_rng(0)
+    assert world.place(world.arena, 2, 0.1, rng).tolist() == [[1.0, 1.0], [9.0, 9.0]]
+    assert (world.fixed, world.robots, world.arena.corner) == (True, 2, (-5.0, -3.0))
+    with pytest.raises(ValueError, match=r"robot 1 starts at \(6, 0\); expected a place"):
+        occupancy_map(file=drawn, positions=np.array([[-4.0, -2.0], [6.0, 0.0]]))
+    with pytest.raises(ValueError, match="robot 0 starts at"):
+        occupancy_map(file=drawn, positions=np.array([[np.nan, -2.0]]))
 
 
 def test_a_tolerance_makes_fewer_corners_and_only_grows_what_stands():

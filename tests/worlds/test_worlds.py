@@ -7,13 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from worlds.arena import Arena, ImpossibleWorld, scatter
-from worlds.arena import given as place_given
+from worlds.arena import Arena, ImpossibleWorld
 from worlds.catalogue import EVENTS, WORLDS, placed, random_hole
 from worlds.events import trace, uniform_sites
+from worlds.ground import ground_of
+from worlds.scattering import given as place_given
+from worlds.scattering import scatter
 from worlds.shapes import Disc, Polygon, square
 
 L_SHAPE = Polygon(((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)))
+OPEN = ground_of(Arena(), 0.0)
 FREE_OF_FILES = sorted(set(WORLDS) - {"map", "placed"})
 
 
@@ -36,7 +39,9 @@ def test_every_world_starts_robots_where_they_have_room(name):
 @pytest.mark.parametrize("process", sorted(set(EVENTS) - {"trace"}))
 def test_events_fall_on_the_floor_in_order_and_not_into_obstacles(name, process):
     arena = WORLDS[name].function().arena
-    happening = EVENTS[process].function(arena, 0.5, *map(np.random.default_rng, (2, 3)))
+    happening = EVENTS[process].function(
+        ground_of(arena, 0.0), 0.5, *map(np.random.default_rng, (2, 3))
+    )
     drawn = [next(happening) for _ in range(600)]
     places = np.array([occurrence.position for occurrence in drawn])
     times = np.array([occurrence.time for occurrence in drawn])
@@ -49,7 +54,7 @@ def test_events_fall_on_the_floor_in_order_and_not_into_obstacles(name, process)
 
 def test_a_poisson_process_forgets():
     """Gaps are exponential: as spread as long on average."""
-    happening = EVENTS["uniform"].function(Arena(), 2.0, *map(np.random.default_rng, (4, 5)))
+    happening = EVENTS["uniform"].function(OPEN, 2.0, *map(np.random.default_rng, (4, 5)))
     gaps = np.diff([0.0, *(next(happening).time for _ in range(4000))])
     assert gaps.mean() == pytest.approx(0.5, rel=0.05)
     assert gaps.std() == pytest.approx(0.5, rel=0.08)
@@ -58,7 +63,9 @@ def test_a_poisson_process_forgets():
 def test_bursts_and_hot_spots_cluster():
     def nearest(process):
         arena = Arena(40.0, 40.0)
-        happening = EVENTS[process].function(arena, 0.5, *map(np.random.default_rng, (6, 7)))
+        happening = EVENTS[process].function(
+            ground_of(arena, 0.0), 0.5, *map(np.random.default_rng, (6, 7))
+        )
         places = np.array([next(happening).position for _ in range(300)])
         gaps = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + 99.0 * np.eye(300)
         return gaps.min(axis=1).mean()
@@ -69,18 +76,18 @@ def test_bursts_and_hot_spots_cluster():
 
 def test_a_trace_says_when_where_and_for_how_long():
     rows = np.array([[5.0, 1.0, 2.0, np.nan, 9.0], [3.0, 4.0, 4.0, 2.0, np.nan]])
-    drawn = list(trace(Arena(), 1.0, None, None, occurrences=rows))
+    drawn = list(trace(OPEN, 1.0, None, None, occurrences=rows))
     assert [(o.time, o.position) for o in drawn] == [(3.0, (4.0, 4.0)), (5.0, (1.0, 2.0))]
     assert [(o.service, o.deadline) for o in drawn] == [(2.0, None), (None, 9.0)]
     with pytest.raises(ValueError, match="outside the arena"):
-        list(trace(Arena(), 1.0, None, None, occurrences=np.array([[1.0, 11.0, 2.0]])))
+        list(trace(OPEN, 1.0, None, None, occurrences=np.array([[1.0, 11.0, 2.0]])))
     with pytest.raises(ValueError, match="2 columns"):
-        list(trace(Arena(), 1.0, None, None, occurrences=np.array([[1.0, 1.0]])))
+        list(trace(OPEN, 1.0, None, None, occurrences=np.array([[1.0, 1.0]])))
 
 
 def test_events_fall_into_the_hole_too():
     world = random_hole()
-    sites = uniform_sites(world.arena, np.random.default_rng(3))
+    sites = uniform_sites(ground_of(world.arena, 0.0), np.random.default_rng(3))
     drawn = np.array([next(sites) for _ in range(2000)])
     share = (world.arena.hole.distance(drawn) == 0.0).mean()
     assert share == pytest.approx(np.pi * 2.5**2 / 100.0, abs=0.03)
@@ -107,9 +114,13 @@ def test_what_does_not_fit_is_said(arena, count, radius):
 
 
 def test_obstacles_everywhere_leave_no_events():
-    arena = Arena(obstacles=(square(5.0, 5.0, 20.0),))
-    with pytest.raises(ImpossibleWorld, match="cover the whole arena"):
-        next(uniform_sites(arena, np.random.default_rng(6)))
+    with pytest.raises(ImpossibleWorld, match="has no room anywhere"):
+        ground_of(Arena(obstacles=(square(5.0, 5.0, 20.0),)), 0.0)
+    speck = Arena(
+        1000.0, 1000.0, obstacles=(Polygon(((0, 0), (1000, 0), (1000, 999.9), (0, 1000))),)
+    )
+    with pytest.raises(ImpossibleWorld, match="too small a part"):
+        next(uniform_sites(ground_of(speck, 0.04), np.random.default_rng(6)))
 
 
 def test_given_places_are_kept_or_refused():

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from fleet.assembly import run, start, streams
+from fleet.assembly import run, streams
 from fleet.experiments.energy.settings import LONGEST, SHORTEST
 from fleet.fleet import Fleet
 from fleet.motion import Motion, Trip
 from fleet.observer import Observer
+from fleet.placement import start
 from fleet.power import Battery
 from fleet.results import Summary
 from fleet.robot import Robot, RobotSpec
@@ -24,7 +25,7 @@ from fleet.scenario.choices import make_motion, make_world
 from fleet.scenario.loading import scenario_from
 from fleet.study.job import Job
 from protocols.messages import Event, Point, RobotId
-from worlds.arena import Arena
+from worlds.ground import Ground, ground_of
 
 Row = dict[str, Any]
 
@@ -37,7 +38,8 @@ def drive_tasks(job: Job) -> Row:
     """
     scenario = scenario_from(job.scenario["scenario"])
     world, random = make_world(scenario.world), streams(scenario.seed)
-    points = start(world, scenario, scenario.robot.radius, random["placement"])
+    ground = ground_of(world.arena, scenario.robot.radius, world.start)
+    points = start(world, ground, scenario, random["placement"])
     motion = make_motion(scenario.motion, scenario.robot, world.arena, None)
     headings = random["heading"].uniform(-pi, pi, len(points)).tolist()
     robots = [
@@ -45,7 +47,7 @@ def drive_tasks(job: Job) -> Row:
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
     ]
     motion.place(robots)
-    errands = _errands(robots, world.arena, random["sites"])
+    errands = _errands(robots, ground, random["sites"])
     rows = [_driven(next(errands), motion, scenario.robot) for _ in range(job.scenario["tasks"])]
     return {"trips": len(rows), "tables": {"trips": rows}}
 
@@ -120,7 +122,7 @@ def row_of(trip: Trip, heading: float, drained: float, spec: RobotSpec) -> Row:
 
 
 def _errands(
-    robots: list[Robot], arena: Arena, rng: np.random.Generator
+    robots: list[Robot], ground: Ground, rng: np.random.Generator
 ) -> Iterator[tuple[Robot, Point]]:
     """A robot and a free site at a random distance and in a random direction, again and again."""
     while True:
@@ -130,8 +132,8 @@ def _errands(
             direction = float(rng.uniform(-pi, pi))
             x = robot.position[0] + distance * cos(direction)
             y = robot.position[1] + distance * sin(direction)
-            inside = 0.0 < x < arena.width and 0.0 < y < arena.height
-            if inside and arena.is_free(np.array([[x, y]]))[0]:
+            inside = 0.0 < x < ground.arena.width and 0.0 < y < ground.arena.height
+            if inside and ground.holds(np.array([[x, y]]))[0]:
                 yield robot, (x, y)
                 break
 

@@ -17,7 +17,8 @@ from fleet.scenario.model import Scenario
 from protocols.geometry import crossing
 from protocols.messages import Award, Event
 from protocols.topology import connected, edges
-from worlds.arena import Arena, FloatArray, scatter
+from worlds.arena import Arena, FloatArray
+from worlds.scattering import scatter
 
 ROBOTS, SEED = 100, 2021
 

@@ -12,7 +12,8 @@ from fleet.motion.kernels.records import LINE
 from fleet.motion.options import DriveOptions
 from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
-from worlds.arena import Arena, scatter
+from worlds.arena import Arena
+from worlds.scattering import scatter
 
 
 @pytest.fixture(scope="session")

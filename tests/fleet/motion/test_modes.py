@@ -108,7 +108,8 @@ import numpy as np
 from fleet.power import Battery
 from fleet.motion.driven import DrivenMotion
 from fleet.robot import Robot, RobotSpec
-from worlds.arena import Arena, scatter
+from worlds.arena import Arena
+from worlds.scattering import scatter
 from worlds.shapes import Polygon
 
 arena = Arena(obstacles=(Polygon(((4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0))),))

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from fleet.motion.kernels.records import LINE
 from fleet.motion.planning import Planner
-from worlds.arena import Arena, scatter
+from worlds.arena import Arena
+from worlds.scattering import scatter
 from worlds.shapes import Polygon
 
 CLEARANCE = 0.03

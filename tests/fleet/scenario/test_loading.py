@@ -204,14 +204,14 @@ def test_a_user_file_that_raises_is_named_with_its_line(tmp_path):
     assert "does not import in line 1 of broken.py: SyntaxError" in said
 
 
-def test_columns_in_another_order_are_refused_and_not_mixed_up(tmp_path):
+def test_a_trace_goes_by_the_names_of_its_columns(tmp_path):
     path = tmp_path / "events.csv"
     events = {"name": "trace", "occurrences": str(path)}
-    path.write_text("time,y,x\n1.0,2.0,3.0\n")
-    with pytest.raises(BadInput, match=r"the columns are time,y,x; expected x,y or time,x,y"):
+    path.write_text("Time,y,x\n1.0,2.0,13.0\n")
+    with pytest.raises(BadInput, match=r"events.csv: row 1: the event at \(13, 2\) lies outside"):
         fleet.run(fleet.Scenario.of(events=events, motion="straight"))
     path.write_text("Time, x, y\n1.0,2.0,3.0\n")
     assert fleet.run(fleet.Scenario.of(events=events, motion="straight")).events == 1
     path.write_text("-1.0,2.0,3.0\n")
-    with pytest.raises(BadInput, match=r"an event happens at -1.0 s; expected 0 or more"):
+    with pytest.raises(BadInput, match=r"row 1: .* happens at -1 s; expected 0 or more"):
         fleet.run(fleet.Scenario.of(events=events, motion="straight"))
