@@ -15,7 +15,6 @@ from typing import Any, TypeVar, get_args, get_origin
 from pydantic import TypeAdapter, ValidationError
 
 from fleet.scenario.delimited import numbers
-from fleet.scenario.delimited import numbers
 from fleet.scenario.errors import BadInput, bad, or_list, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.model import Scenario
