@@ -58,7 +58,7 @@ def main() -> None:
             print(
                 f"  {n:6} robots, {radio:5} radio: {fast:7.1f}; {summary.served} of"
                 f" {summary.events} served, {summary.messages} messages,"
-                f" {summary.stream.beacons} beacons"
+                f" {summary.beacons} beacons"
             )
     print("most of them driving, with messages: steps of 0.1 s a CPU second, and × ARGoS 3")
     for n, rate, duration in ((100, 60.0, 30.0), (1_000, 600.0, 10.0)):

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
-from math import inf, pi
+from math import pi
 
 import numpy as np
 
 from fleet.faults import Blackout
 from fleet.fleet import Fleet, RunLabels
 from fleet.handler import Handler
-from fleet.modes import Stream
 from fleet.motion.motions import MOTIONS
 from fleet.observer import Audience, Observer
 from fleet.placement import start
@@ -116,15 +115,15 @@ def make_schedule(
     for fault in scenario.faults.planned:
         if fault.robot >= robots:
             raise bad("faults.planned", f"robot is {fault.robot}; expected 0 to {robots - 1}")
-    rate = timing.rate if isinstance(timing, Stream) else inf
     try:
-        occurrences = bind_events(scenario.events)(ground, rate, random["sites"], random["times"])
+        occurrences = bind_events(scenario.events)(
+            ground, timing.rate, random["sites"], random["times"]
+        )
         first = next(occurrences, None)  # what an event process refuses, it refuses here
     except ValueError as error:
         raise bad("events", f"{_file_of(scenario)}{error}") from error
-    last = timing.duration if isinstance(timing, Stream) else inf
     if first is not None and scenario.events.name == "trace":
-        occurrences = _within(last, [first, *occurrences], scenario, noticed)
+        occurrences = _within(timing.duration, [first, *occurrences], scenario, noticed)
         first = next(occurrences)
     return Schedule(
         timing,

@@ -9,8 +9,8 @@ from math import inf
 from fleet.agenda import Agenda
 from fleet.observer import Audience, Excerpt
 from fleet.radio import BrokenProtocol, Radio
-from fleet.results import Tally
 from fleet.robot import Robot
+from fleet.tally import RADIO, Tally
 from fleet.tasks import Task
 from protocols.messages import (
     Award,
@@ -140,7 +140,8 @@ class Conversations:
     def _charge(self, transmission: Transmission, attempts: int) -> None:
         """What its sender pays for a transmission."""
         if self.frame_energy:
-            self.robots[transmission.sender].battery.drain(self.frame_energy * attempts)
+            battery = self.robots[transmission.sender].battery
+            self.tally.accounts[RADIO] += battery.drain(self.frame_energy * attempts)
 
     def _in_time(
         self, talk: Dialogue, transmission: Transmission, heard: Heard, now: float

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from fleet.agenda import Agenda
-from fleet.radio import Radio
-from fleet.results import Tally
+from fleet.tally import Tally
 from fleet.tasks import State, Task
 from protocols.messages import Award, Conversation, Event, RobotId, View
 
@@ -37,7 +36,6 @@ class Dispatch:
 
     dispatcher: Dispatcher
     view: View
-    radio: Radio
     agenda: Agenda
     tally: Tally
     concluded: Callable[[Task, Award], None]

@@ -73,8 +73,9 @@ class Battery:
         self.capacity = capacity  # [J]
         self.charge = capacity  # [J]
 
-    def drain(self, energy: float) -> None:
-        """Take ``energy`` [J] out; what is not there is not taken."""
+    def drain(self, energy: float) -> float:
+        """Take ``energy`` [J] out; what is not there is not taken. Returns what was."""
         if not energy >= 0.0:
             raise ValueError(f"cannot drain {energy} J; expected 0 or more")
-        self.charge = max(0.0, self.charge - energy)
+        before, self.charge = self.charge, max(0.0, self.charge - energy)
+        return before - self.charge

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
+from math import dist, inf
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from fleet.fleet import Fleet
 from fleet.motion import Motion
 from fleet.observer import Audience
 from fleet.radio import Radio
+from fleet.results import Ending
 from fleet.robot import Robot, SeenRobot
+from fleet.tally import STANDING, Tally
 from protocols.messages import Point, RobotId, View
 
 REFRESH = 0.1  # links are at most so old while robots drive and anybody talks or beacons [s]
@@ -31,6 +33,7 @@ class Presence:
         radio: Radio,
         motion: Motion,
         audience: Audience,
+        tally: Tally,
         *,
         many_drive: bool,
     ) -> None:
@@ -43,12 +46,13 @@ class Presence:
         self._radio = radio
         self._motion = motion
         self._audience = audience
+        self._tally = tally
         places = np.array([robot.position for robot in fleet.robots], float).reshape(-1, 2)
         self._x, self._y = places[:, 0].copy(), places[:, 1].copy()
         self._slice = audience.link_interval or inf
         if radio.takes_time:
             self._slice = min(self._slice, REFRESH)
-        self._refreshed = 0.0
+        self._looked = 0.0  # since when nobody has moved unseen [s]
         self._true_links = audience.present and radio.takes_time
         self._blackouts: list[Blackout] = []
         self._idle = fleet.spec.extra.idle  # [W]
@@ -56,7 +60,9 @@ class Presence:
 
     def slice_end(self, now: float, due: float) -> float:
         """How far to drive before links must be looked at again, at most to ``due`` [s]."""
-        return min(due, now + self._slice) if self._motion.moving else due
+        if not self._motion.moving:
+            return due
+        return min(due, max(now, self._looked + self._slice))
 
     def follow(self, now: float, arrived: Sequence[RobotId] = ()) -> None:
         """Robots have driven: tell the radio, and observers, where they are."""
@@ -72,14 +78,14 @@ class Presence:
             self._paid[id] = now
         self.stand(now)
         self._radio.refresh(moved, now)
-        self._refreshed = now
+        self._looked = now
         if self._audience.present and moved:
             self._show(moved, now)
 
     def freshen(self, now: float) -> None:
         """Before anybody talks: links that are too old are brought up to date."""
         self.stand(now)
-        if now - self._refreshed >= REFRESH and self._motion.moving:
+        if now - self._looked >= REFRESH and self._motion.moving:
             self.follow(now)
 
     def stand(self, now: float) -> None:
@@ -87,13 +93,16 @@ class Presence:
 
         Under way it is motion that pays. Ask for this before somebody sets off.
         """
+        if not self._motion.moving:
+            self._looked = now
         if not self._idle:
             return
         for robot in self._motion.moving:
             self._paid[robot.id] = now
         for robot in self._fleet.robots:
             if robot.alive and self._paid[robot.id] < now:
-                robot.battery.drain(self._idle * (now - self._paid[robot.id]))
+                spent = robot.battery.drain(self._idle * (now - self._paid[robot.id]))
+                self._tally.accounts[STANDING] += spent
                 self._paid[robot.id] = now
                 if robot.battery.charge == 0.0:
                     self.bury(robot, now)
@@ -124,6 +133,27 @@ class Presence:
         """Whether no living robot is nearer to ``site`` [m] than the root of ``squared``."""
         dx, dy = self._x - site[0], self._y - site[1]
         return not (dx * dx + dy * dy < squared).any()
+
+    def why_nobody(self, site: Point) -> Ending:
+        """Why no robot goes to ``site`` [m], by what the robots themselves believe."""
+        robots = [robot for robot in self._fleet.robots if robot.on_air]
+        if not robots:
+            return "nobody on the air"
+        robots = [robot for robot in robots if robot.able and not robot.engaged]
+        if not robots:
+            return "nobody can drive"
+        per_metre = self._fleet.spec.power.per_metre(self._fleet.spec.cruise)
+        charged = [r for r in robots if per_metre * dist(r.position, site) <= r.energy]
+        if not charged:
+            return "nobody has the energy"
+        charged.sort(key=lambda robot: dist(robot.position, site))
+        reachable = False
+        for robot in charged:
+            cost = robot.cost_to(site)
+            if cost <= robot.energy:
+                return "nobody was found"
+            reachable = reachable or cost < inf
+        return "nobody has the energy" if reachable else "nobody can reach the event"
 
     def _listen_anew(self, now: float) -> None:
         """Who is in a silent region, now that robots or regions have changed."""

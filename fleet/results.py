@@ -1,15 +1,29 @@
-"""What a run comes to: one frozen record, and how its figures are counted."""
+"""What a run comes to: one frozen record, and where its figures are from."""
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from math import fsum, sqrt
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 from fleet.fleet import Fleet
-from fleet.service import StreamFigures
+from fleet.service import StreamFigures, never_served, stream_figures
+from fleet.tally import Tally
+from fleet.tasks import OPEN, State, TaskBook
 from protocols.messages import KINDS
+
+Ending = Literal[
+    "rounds played",  # as many as were asked for
+    "time over",  # of a stream
+    "no more events",  # in a trace
+    "nobody on the air",
+    "nobody can drive",  # all motors broke down, or are under way
+    "nobody can reach the event",
+    "nobody has the energy",
+    "nobody was found",  # somebody could have gone; those who talked did not find it
+    "no sensor notices events",
+]
+"""Why a run ended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +40,15 @@ class Summary:
     robots: int
     radio_range: float  # r [m]
     search_radius: float  # SR [m]
+    ended: Ending  # why
     lifetime: int  # events served before the first that never was
+    censored: bool  # there was no such event: the lifetime is that or longer
     events: int  # events that happened
     served: int  # events that a robot reached
+    waiting: int  # events still open at the end
+    expired: int  # events that no robot set off to by their deadline
+    lost: int  # events given up; events = served + waiting + expired + lost
+    lost_by_reason: dict[str, int]
     failed: int  # trips that ended short of their event
     messages: int  # transmissions; a broadcast is one
     messages_per_robot: float
@@ -38,6 +58,7 @@ class Summary:
     energy_initial: float  # of the whole fleet
     energy_predicted: float  # Eq. (1) on the straight line from start to event, all trips
     energy_drained: float  # what the batteries lost
+    energy_by_account: dict[str, float]  # what it went into; adds up to what was drained
     energy_left_mean: float  # a robot
     energy_left_min: float
     energy_left_sd: float  # over the robots (population)
@@ -45,6 +66,16 @@ class Summary:
     distance_per_robot: float  # straight lines from start to end, all trips
     path_per_robot: float  # driven
     closest_found: float  # share of events whose nearest robot ended the search or won
+    conversations: int  # offers talked over
+    conflicts: int  # auctions won by a robot that another event had taken meanwhile
+    broken: int  # conversations that came to no end
+    restarts: int  # searches begun anew because the packet went round in circles
+    repeated: int  # frames sent again because nobody acknowledged them
+    unheard: int  # transmissions that nobody heard
+    beacons: int
+    sensor_messages: int  # hops of reports through the sensor field
+    breakdowns: int
+    relocations: int  # trips to places that are no events
     simulated_time: float
     wall_time: float
 
@@ -58,44 +89,31 @@ class Summary:
         return described
 
 
-@dataclass(slots=True)
-class Tally:
-    """What is counted as a run goes on."""
+class PlayedRun(NamedTuple):
+    """A run that is over, as far as its summary needs it."""
 
-    served: int = 0
-    failed: int = 0  # trips
-    conversations: int = 0
-    closest: int = 0  # conversations that found the nearest robot
-    predicted: float = 0.0  # [J]
-    distance: float = 0.0  # [m]
-    path: float = 0.0  # [m]
-    engaged: float = 0.0  # time that robots were promised, under way or at work, summed [s]
-    repeated: int = 0  # frames sent again because nobody acknowledged them
-    unheard: int = 0  # transmissions that nobody heard
-    restarts: int = 0  # searches begun anew because the packet went round in circles
-    broken: int = 0  # conversations that came to no end
-    conflicts: int = 0  # auctions won by a robot that another had taken meanwhile
-    breakdowns: int = 0
-    relocations: int = 0  # trips to places that are no events
-    kinds: Counter[str] = field(default_factory=Counter)  # transmissions
+    fleet: Fleet
+    tally: Tally
+    book: TaskBook
+    ended: Ending
+    time: float  # [s]
+    beacons: int
+    sensor_messages: int
 
 
-def summarise(
-    fleet: Fleet,
-    tally: Tally,
-    events: int,
-    simulated_time: float,
-    wall_time: float,
-    figures: StreamFigures | None,
-) -> Summary:
-    """The record of a run that is over."""
-    labels = fleet.labels
-    n = len(fleet.robots)
+def summarise(run: PlayedRun, wall_time: float, longest_wait: float, *, streamed: bool) -> Summary:
+    """The record of a run that is over. An event still open counts as never served if it has
+    waited for ``longest_wait`` [s].
+    """
+    fleet, tally, book = run.fleet, run.tally, run.book
+    labels, n = fleet.labels, len(fleet.robots)
     left = [robot.battery.charge for robot in fleet.robots]
     initial = fsum(robot.battery.capacity for robot in fleet.robots)
-    mean = fsum(left) / n
-    by_kind: dict[str, int] = {kind: tally.kinds[kind] for kind in KINDS}
+    drained, mean = initial - fsum(left), fsum(left) / n
+    by_kind: dict[str, int] = dict.fromkeys(KINDS, 0) | tally.kinds  # and a protocol's own
     messages = sum(by_kind.values())
+    never = [never_served(task, run.time, longest_wait) for task in book.tasks]
+    before = never.index(True) if any(never) else len(never)
     return Summary(
         protocol=labels.protocol,
         motion=labels.motion,
@@ -104,9 +122,15 @@ def summarise(
         robots=n,
         radio_range=fleet.topology.radio_range,
         search_radius=labels.search_radius,
-        lifetime=tally.served if figures is None else figures.served_before_first_loss,
-        events=events,
+        ended=run.ended,
+        lifetime=sum(task.state is State.SERVED for task in book.tasks[:before]),
+        censored=not any(never),
+        events=len(book.tasks),
         served=tally.served,
+        waiting=book.count(*OPEN),
+        expired=book.count(State.EXPIRED),
+        lost=book.count(State.LOST),
+        lost_by_reason=book.lost_by_reason(),
         failed=tally.failed,
         messages=messages,
         messages_per_robot=messages / n,
@@ -115,7 +139,8 @@ def summarise(
         hops_face=by_kind["route-face"],
         energy_initial=initial,
         energy_predicted=tally.predicted,
-        energy_drained=initial - fsum(left),
+        energy_drained=drained,
+        energy_by_account=dict(tally.accounts),
         energy_left_mean=mean,
         energy_left_min=min(left),
         energy_left_sd=sqrt(fsum((charge - mean) ** 2 for charge in left) / n),
@@ -123,7 +148,17 @@ def summarise(
         distance_per_robot=tally.distance / n,
         path_per_robot=tally.path / n,
         closest_found=tally.closest / max(tally.conversations, 1),
-        simulated_time=simulated_time,
+        conversations=tally.conversations,
+        conflicts=tally.conflicts,
+        broken=tally.broken,
+        restarts=tally.restarts,
+        repeated=tally.repeated,
+        unheard=tally.unheard,
+        beacons=run.beacons,
+        sensor_messages=run.sensor_messages,
+        breakdowns=tally.breakdowns,
+        relocations=tally.relocations,
+        simulated_time=run.time,
         wall_time=wall_time,
-        stream=figures,
+        stream=stream_figures(book, tally, n, run.time, never, drained) if streamed else None,
     )

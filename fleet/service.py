@@ -1,18 +1,15 @@
-"""What a stream comes to: how soon, how many, how busy, at what cost."""
+"""The service that a stream of events gets: how soon, how many, how busy, at what cost."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import dist, inf
-from typing import TYPE_CHECKING
+from math import dist
 
 import numpy as np
 
-from fleet.tasks import OPEN, State, Task, TaskBook
-
-if TYPE_CHECKING:
-    from fleet.results import Tally
+from fleet.tally import Tally
+from fleet.tasks import State, Task, TaskBook
 
 TOLERATED = 0.1  # share of events not served at which a stream's life is said to be over
 FEWEST = 10  # events from which that share is looked at
@@ -20,16 +17,13 @@ FEWEST = 10  # events from which that share is looked at
 
 @dataclass(frozen=True, slots=True)
 class StreamFigures:
-    """Figures of a stream. Times in s; what cannot be told, for want of events, is None.
+    """Figures that only a stream has. Times in s; what cannot be told, for want of events, is None.
 
     An event was never served if it was lost, has expired, or has at the end waited longer than
-    offers are ever apart. Raised = served + waiting + expired + lost.
+    offers are ever apart.
     """
 
-    waiting: int  # events still open at the end
-    expired: int  # that no robot set off to by their deadline
-    lost: int  # given up
-    lost_by_reason: dict[str, int]
+    within_deadline: float | None  # share of all events that a robot reached by their deadline
     response_mean: float | None  # from an event to the arrival of a robot, of events served
     response_median: float | None
     response_p90: float | None
@@ -40,36 +34,24 @@ class StreamFigures:
     throughput: float  # events served a second
     utilisation: float  # share of their time that robots were promised, driving or at work
     messages_per_served: float | None
-    energy_per_served: float | None  # [J] predicted by Eq. (1)
+    energy_drained_per_served: float | None  # [J]
+    energy_predicted_per_served: float | None  # [J] by Eq. (1)
     lifetime_first: float | None  # when the first event happened that was never served
     lifetime_tolerated: float | None  # when a tenth of the events so far were never served
-    served_before_first_loss: int
-    conversations: int
-    conflicts: int
-    broken: int
-    restarts: int
-    breakdowns: int
-    relocations: int
-    repeated: int
-    unheard: int
-    beacons: int
-    sensor_messages: int
 
 
 def stream_figures(
-    book: TaskBook,
-    tally: Tally,
-    robots: int,
-    end: float,
-    patience: float,
-    beacons: int,
-    sensor_messages: int,
+    book: TaskBook, tally: Tally, robots: int, end: float, never: Sequence[bool], drained: float
 ) -> StreamFigures:
-    """The figures of a stream that ended at ``end`` [s]."""
+    """The figures of a stream that ended at ``end`` [s].
+
+    ``never`` tells of each task whether it was never served; ``drained`` is what batteries
+    lost [J].
+    """
     tasks = book.tasks
     served = [task for task in tasks if task.state is State.SERVED]
     response = np.array([task.reached - task.raised for task in served])
-    never = [_never_served(task, end, patience) for task in tasks]
+    in_time = sum(task.reached - task.raised <= task.deadline for task in served)
     first = next((task.raised for task, lost in zip(tasks, never, strict=True) if lost), None)
     backlog_mean, backlog_most = _backlog(tasks, end)
     duration = max(end, 1e-9)
@@ -81,10 +63,7 @@ def stream_figures(
         return total / len(served) if served else None
 
     return StreamFigures(
-        waiting=book.count(*OPEN),
-        expired=book.count(State.EXPIRED),
-        lost=book.count(State.LOST),
-        lost_by_reason=book.lost_by_reason(),
+        within_deadline=in_time / len(tasks) if tasks else None,
         response_mean=float(response.mean()) if len(response) else None,
         response_median=quantile(0.5),
         response_p90=quantile(0.9),
@@ -95,28 +74,17 @@ def stream_figures(
         throughput=len(served) / duration,
         utilisation=tally.engaged / (robots * duration),
         messages_per_served=each(sum(tally.kinds.values())),
-        energy_per_served=each(tally.predicted),
+        energy_drained_per_served=each(drained),
+        energy_predicted_per_served=each(tally.predicted),
         lifetime_first=first,
         lifetime_tolerated=_tolerated(tasks, never),
-        served_before_first_loss=sum(
-            task.raised < (inf if first is None else first) for task in served
-        ),
-        conversations=tally.conversations,
-        conflicts=tally.conflicts,
-        broken=tally.broken,
-        restarts=tally.restarts,
-        breakdowns=tally.breakdowns,
-        relocations=tally.relocations,
-        repeated=tally.repeated,
-        unheard=tally.unheard,
-        beacons=beacons,
-        sensor_messages=sensor_messages,
     )
 
 
-def _never_served(task: Task, end: float, patience: float) -> bool:
+def never_served(task: Task, end: float, longest_wait: float) -> bool:
+    """Whether a task of a run that ended at ``end`` [s] was given up, or might as well be."""
     if task.state in (State.REPORTED, State.WAITING):
-        return end - task.raised > patience
+        return end - task.raised > longest_wait
     return task.state in (State.LOST, State.EXPIRED)
 
 

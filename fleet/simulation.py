@@ -1,11 +1,10 @@
-"""The loop: events happen, are talked over and driven to, in rounds or as a stream."""
+"""The loop: events happen, are talked over and driven to."""
 
 from __future__ import annotations
 
 import time
-from collections import deque
 from functools import partial
-from math import dist, inf
+from math import inf
 
 from fleet.agenda import Agenda
 from fleet.conversations import Conversations
@@ -13,19 +12,21 @@ from fleet.dispatch import Dispatch, Dispatcher
 from fleet.faults import Breakdown
 from fleet.fleet import Fleet
 from fleet.handler import Handler, Notice
-from fleet.modes import Rounds, Stream
+from fleet.journeys import Journey, Journeys
 from fleet.motion import Motion, Trip
 from fleet.observer import Audience
 from fleet.presence import Presence
 from fleet.radio import Radio
-from fleet.results import Summary, Tally, summarise
+from fleet.results import Ending, PlayedRun, Summary, summarise
 from fleet.robot import Appraisal, Robot
 from fleet.schedule import Schedule
-from fleet.service import stream_figures
+from fleet.tally import Tally
 from fleet.tasks import State, Task, TaskBook
 from protocols.geometry import squared_distance
-from protocols.messages import Award, Event, Move, Point, ProtocolFunction, RobotId
+from protocols.messages import Award, Event, Point, ProtocolFunction, RobotId
 from worlds.events import Occurrence
+
+UNNOTICED = 1000  # events in a row of which no sensor tells, after which rounds are over
 
 
 class Simulation:
@@ -45,33 +46,32 @@ class Simulation:
         self.tally = Tally()
         self.book = TaskBook()
         self.now = 0.0  # [s]
+        self.ended: Ending | None = None  # why, once it has
         self._schedule = schedule
+        self._mode = mode = schedule.timing.mode(schedule.rounds, lossy=radio.takes_time)
         self._handler = handler
         self._motion = motion
+        self._radio = radio
         self._audience = audience
         self._agenda = Agenda()
-        many_drive = isinstance(schedule.timing, Stream)
-        self._presence = Presence(fleet, radio, motion, audience, many_drive=many_drive)
+        self._presence = Presence(
+            fleet, radio, motion, audience, self.tally, many_drive=not mode.one_at_a_time
+        )
+        self._journeys = Journeys(fleet, motion, self._presence, audience, self.tally)
         self._talks: Conversations | Dispatch
-        if many_drive and isinstance(protocol, Dispatcher):
+        if isinstance(protocol, Dispatcher) and not mode.one_at_a_time:
             self._talks = Dispatch(
-                protocol, self._presence.view, radio, self._agenda, self.tally, self._concluded
+                protocol, self._presence.view, self._agenda, self.tally, self._concluded
             )
         else:
             self._talks = Conversations(
                 protocol, self._presence.view, fleet.robots, radio, self._agenda, self.tally,
                 audience, fleet.spec.extra.transmission, self._concluded, self._broken_off,
             )  # fmt: skip
-        self._trips: dict[int, Task] = {}  # by robot: what it is under way to
-        self._relocating: dict[int, tuple[Task, bool]] = {}  # by robot: why, and if it carries it
-        self._since: dict[int, float] = {}  # by robot: since when it is engaged [s]
-        self._in_hand: Task | None = None  # in rounds one task is attended to at a time,
-        self._in_line: deque[Task] = deque()  # and others that one event raised wait in line
-        self._over = False
-        appraisals: dict[Point, dict[int, Appraisal]] | None = {} if audience.weighs else None
+        self._unnoticed = 0  # events in a row
+        self._appraisals: dict[Point, dict[int, Appraisal]] | None = {} if audience.weighs else None
         for robot in fleet.robots:
-            robot.appraisals = appraisals
-        self._appraisals = appraisals
+            robot.appraisals = self._appraisals
 
     def run(self) -> Summary:
         """Play to the end: of the network's life, of the rounds, or of the time."""
@@ -79,12 +79,11 @@ class Simulation:
         try:
             self._audience.run_started(self.fleet)
             self._begin()
-            while not self._over:
+            while self.ended is None:
                 self._go_on()
             self._presence.stand(self.now)
-            for robot in list(self._since):
-                self._release(self.fleet.robots[robot])
-            summary = self._summary(time.perf_counter() - started)
+            self._journeys.break_off(self.now)
+            summary = self._summary(self.ended, time.perf_counter() - started)
             self._audience.run_ended(summary)
             return summary
         finally:
@@ -99,8 +98,8 @@ class Simulation:
         for blackout in schedule.blackouts:
             agenda.at(blackout.start, partial(self._presence.black_out, blackout, blackout.start))
             agenda.at(blackout.end, partial(self._presence.lift, blackout, blackout.end))
-        if isinstance(schedule.timing, Stream):
-            agenda.at(schedule.timing.duration, self._stop)
+        if self._mode.duration < inf:
+            agenda.at(self._mode.duration, partial(self._end, "time over"))
         self._expect()
 
     def _go_on(self) -> None:
@@ -110,8 +109,8 @@ class Simulation:
             self._agenda.take()()
             return
         until = self._presence.slice_end(self.now, due)
-        if until == inf and not self._trips and not self._relocating:
-            self._over = True  # nothing can happen any more
+        if until == inf and not self._journeys:
+            self._end("no more events")  # nothing can happen any more
             return
         trips = self._motion.advance(until)
         self.now = max(self.now, self._motion.now if trips else until)
@@ -122,48 +121,34 @@ class Simulation:
         else:
             self._agenda.take()()
 
-    def _stop(self) -> None:
-        self._over = True
+    def _end(self, why: Ending) -> None:
+        self.ended = self.ended or why
 
     # What happens, and who is told
 
     def _expect(self) -> None:
-        """Put the next occurrence down: in rounds now, in a stream by its time."""
-        timing = self._schedule.timing
-        if self._enough():
-            self._over = self._over or isinstance(timing, Rounds)
-            return
-        occurrence = next(self._schedule.occurrences, None)
-        if occurrence is None:
-            self._over = self._over or isinstance(timing, Rounds)
-        elif isinstance(timing, Stream):
-            self._agenda.at(occurrence.time, partial(self._occur, occurrence))
-        else:
-            self._occur(occurrence)
-
-    def _enough(self) -> bool:
-        """Whether as many rounds as asked for were served, or events raised."""
-        limit = self._schedule.rounds
-        streaming = isinstance(self._schedule.timing, Stream)
-        return limit is not None and limit <= (
-            len(self.book.tasks) if streaming else self.tally.served
-        )
+        """Put the next occurrence down for when it happens, if there is one."""
+        mode = self._mode
+        enough = mode.enough(len(self.book.tasks), self.tally.served)
+        occurrence = None if enough else next(self._schedule.occurrences, None)
+        if occurrence is not None:
+            self._agenda.at(mode.when(occurrence, self.now), partial(self._occur, occurrence))
+        elif mode.one_at_a_time:
+            self._end("rounds played" if enough else "no more events")
 
     def _occur(self, occurrence: Occurrence) -> None:
         """Something happens; word of it comes to the handler, or does not."""
-        timing, site = self._schedule.timing, occurrence.position
-        service = timing.service if occurrence.service is None else occurrence.service
-        deadline = timing.deadline if isinstance(timing, Stream) else inf
-        if occurrence.deadline is not None:
-            deadline = occurrence.deadline
+        mode, site = self._mode, occurrence.position
+        service = mode.service if occurrence.service is None else occurrence.service
+        deadline = mode.deadline if occurrence.deadline is None else occurrence.deadline
         notices = self._handler.notices(site)
-        noticed = bool(notices)
+        self._unnoticed = 0 if notices else self._unnoticed + 1
         for notice in notices or [Notice(0.0, site)]:
             event = Event(len(self.book.tasks), notice.position)
             task = Task(event, site, self.now, deadline, service)
             self.book.open(task)
             self._audience.event_occurred(task)
-            if not noticed:
+            if not notices:
                 self._close(task, State.LOST, "no sensor noticed it")
             elif notice.delay:
                 self._agenda.at(self.now + notice.delay, partial(self._offer, task))
@@ -171,20 +156,21 @@ class Simulation:
                 self._offer(task)
             if deadline < inf:
                 self._agenda.at(self.now + deadline, partial(self._expire, task))
-        if isinstance(timing, Stream):
+        if not mode.one_at_a_time:
             self._expect()
+        elif self._unnoticed == UNNOTICED:
+            self._end("no sensor notices events")
 
     def _close(self, task: Task, state: State, reason: str = "") -> None:
         """A task has come to its end; in rounds the next event may happen."""
         self.book.close(task, state, self.now, reason)
         self._audience.event_closed(task.event, state.value, self.now)
-        if isinstance(self._schedule.timing, Rounds):
-            if self._in_hand is task:
-                self._in_hand = None
-            if self._in_line and not self._enough():
-                self._agenda.at(self.now, partial(self._offer, self._in_line.popleft()))
-            elif self._enough() or not self.book.open_tasks:
-                self._agenda.at(self.now, self._expect)
+        following = self._mode.next_in_line(task)
+        enough = self._mode.enough(len(self.book.tasks), self.tally.served)
+        if following is not None and not enough:
+            self._agenda.at(self.now, partial(self._offer, following))
+        elif self._mode.one_at_a_time and (enough or not self.book.open_tasks):
+            self._agenda.at(self.now, self._expect)
 
     def _offer(self, task: Task, source: RobotId | None = None) -> None:
         """Tell a robot of the task, the handler's choice or ``source``, and let it talk."""
@@ -193,11 +179,8 @@ class Simulation:
         if self.now - task.raised > task.deadline:
             self._close(task, State.EXPIRED)  # it was taken when the deadline passed
             return
-        if isinstance(self._schedule.timing, Rounds):
-            if self._in_hand not in (None, task):
-                self._in_line.append(task)
-                return
-            self._in_hand = task
+        if not self._mode.takes_turn(task):
+            return
         task.state = State.REPORTED
         self._presence.freshen(self.now)
         on_air = self._presence.on_air
@@ -223,7 +206,8 @@ class Simulation:
         self._tell_appraisals(task)
         self._audience.awarded(task.event, award, self.now)
         winner = None if award.winner is None else robots[award.winner]
-        set_off = [self._relocate(move, winner, task) for move in award.moves]
+        send = partial(self._journeys.relocate, task=task, now=self.now, carries=winner is None)
+        set_off = [send(move) for move in award.moves]
         if winner is None and any(set_off):
             task.state = State.WAITING  # for the robot that carries it on
         elif winner is None:
@@ -232,7 +216,7 @@ class Simulation:
             self.tally.conflicts += 1
             self._put_off(task, "the winner was taken")
         else:
-            self._send(winner, task)
+            self._journeys.send(winner, task, self.now)
 
     def _broken_off(self, task: Task, why: str) -> None:
         """A conversation came to no end. The handler hears nothing, and asks again."""
@@ -248,95 +232,55 @@ class Simulation:
             self._audience.appraised(task.event, list(found.values()), self.now)
 
     def _put_off(self, task: Task, why: str, *, silent: bool = False) -> None:
-        """The task waits; in rounds, where nothing is lost on the air, life is over."""
-        timing = self._schedule.timing
-        if isinstance(timing, Rounds):
-            patience = timing.offers if self._talks.radio.takes_time else 1
-            if task.offers < patience and self._presence.on_air:
-                self._agenda.at(self.now, partial(self._offer, task))
-                return
-            self._close(task, State.LOST, why)
-            self._over = True
+        """Nobody goes: the task waits for its next offer, or is given up."""
+        wait = self._mode.next_offer(task, silent=silent, anybody=bool(self._presence.on_air))
+        if wait is not None:
+            task.state = State.WAITING
+            self._agenda.at(self.now + wait, partial(self._offer, task))
             return
-        if task.offers >= timing.offers:
-            self._close(task, State.LOST, f"offered {task.offers} times: {why}")
-            return
-        task.state = State.WAITING
-        wait = min(timing.backoff * 2.0 ** min(task.offers - 1, 30), timing.backoff_most)
-        if silent:
-            wait = max(wait, timing.patience)
-        self._agenda.at(self.now + wait, partial(self._offer, task))
+        offered = f"offered {task.offers} times: " if task.offers > 1 else ""
+        self._close(task, State.LOST, offered + why)
+        if self._mode.one_at_a_time:
+            self._end(self._presence.why_nobody(task.event.position))
 
-    # Driving
-
-    def _send(self, robot: Robot, task: Task) -> None:
-        """The robot sets off."""
-        self._presence.stand(self.now)
-        task.state, task.taken = State.TAKEN, self.now
-        robot.engaged = True
-        self._since[robot.id] = self.now
-        self._trips[robot.id] = task
-        self._audience.departed(task.event, robot.id, self.now)
-        self._motion.depart(robot, task.event.position)
-        self._presence.show_plans(self.now)
-
-    def _relocate(self, move: Move, winner: Robot | None, task: Task) -> bool:
-        """A robot goes to a place that is no event; it carries the task if nobody has won it."""
-        robot = self.fleet.robots[move.robot]
-        if robot.engaged or not robot.able or not robot.alive:
-            return False
-        self._presence.stand(self.now)
-        self.tally.relocations += 1
-        robot.engaged = True
-        self._since[robot.id] = self.now
-        self._relocating[robot.id] = task, winner is None
-        self._audience.relocating(task.event, move, self.now)
-        self._motion.depart(robot, move.position)
-        self._presence.show_plans(self.now)
-        return True
-
-    def _relocated(self, robot: Robot, trip: Trip) -> None:
-        """A relocation has ended: what the robot carried is told to it anew."""
-        task, carries = self._relocating.pop(robot.id)
-        self._audience.relocated(task.event, trip)
-        self._release(robot)
-        if not carries or task.state is not State.WAITING:
-            return
-        if trip.outcome == "arrived" and robot.on_air:
-            self._offer(task, robot.id)
-        else:
-            self._raise_again(robot, task)
+    # Where drives end
 
     def _settle(self, robot: Robot, trip: Trip) -> None:
-        """A trip has ended: count it; the event is served, or raised again."""
-        tally, spec = self.tally, self.fleet.spec
-        tally.predicted += spec.power.per_metre(spec.cruise) * dist(trip.origin, trip.site)
-        tally.distance += dist(trip.origin, trip.end)
-        tally.path += trip.path
-        if trip.outcome != "arrived":
-            robot.failed_sites.add(trip.site)
-        if robot.battery.charge == 0.0:
-            self._presence.bury(robot, self.now)
-        if robot.id in self._relocating:
-            self._relocated(robot, trip)
-            return
-        task = self._trips.pop(robot.id)
-        self._audience.trip_ended(task.event, trip)
-        if trip.outcome != "arrived":
-            tally.failed += 1
-            self._release(robot)
+        """A trip has ended: the event is served, or raised again."""
+        journey = self._journeys.ended(trip, self.now)
+        task = journey.task
+        if journey.relocation:
+            self._relocated(robot, trip, journey)
+        elif trip.outcome != "arrived":
+            self._journeys.release(robot, self.now)
             self._raise_again(robot, task)
-            return
-        task.reached = self.now
-        self._handler.hear_from(robot)
-        if task.service > 0.0 and robot.alive:
-            self._agenda.at(self.now + task.service, partial(self._served, robot, task))
         else:
-            self._served(robot, task)
+            task.reached = self.now
+            self._handler.hear_from(robot)
+            if task.service > 0.0 and robot.alive:
+                self._agenda.at(self.now + task.service, partial(self._served, robot, task))
+            else:
+                self._served(robot, task)
+
+    def _relocated(self, robot: Robot, trip: Trip, journey: Journey) -> None:
+        """A relocation has ended: what the robot carried is told to it anew.
+
+        Unless it went nowhere: then nothing has changed, and what was said would be said again.
+        """
+        task = journey.task
+        self._journeys.release(robot, self.now)
+        if not journey.carries or task.state is not State.WAITING:
+            return
+        if trip.outcome != "arrived" or not robot.on_air:
+            self._raise_again(robot, task)
+        elif trip.path == 0.0 or self._mode.carried_enough(task):
+            self._put_off(task, "it was carried on in vain")
+        else:
+            self._offer(task, robot.id)
 
     def _served(self, robot: Robot, task: Task) -> None:
-        """The robot has done its work, unless it broke down over it."""
-        self._release(robot)
+        """The robot has done its work on an event."""
+        self._journeys.release(robot, self.now)
         if task.state is not State.TAKEN:
             return
         if not robot.alive and task.service > 0.0:
@@ -345,27 +289,14 @@ class Simulation:
         self.tally.served += 1
         self._close(task, State.SERVED)
 
-    def _release(self, robot: Robot) -> None:
-        """The robot is free again."""
-        robot.engaged = False
-        self.tally.engaged += self.now - self._since.pop(robot.id)
-
     def _raise_again(self, robot: Robot, task: Task) -> None:
-        """Its robot did not make it: ask for another, at once or when its silence is noticed."""
+        """Its robot did not make it: ask for another as soon as that is noticed."""
         task.state = State.WAITING
-        timing = self._schedule.timing
-        if isinstance(timing, Rounds) or robot.on_air:
-            self._offer_again(task)
+        unnoticed = self._mode.missed_after(task, on_air=robot.on_air)
+        if unnoticed > 0.0:
+            self._agenda.at(self.now + unnoticed, partial(self._offer, task))
         else:
-            self._agenda.at(self.now + timing.patience, partial(self._offer, task))
-
-    def _offer_again(self, task: Task) -> None:
-        """At once, if there is anybody to offer it to."""
-        if self._presence.on_air:
-            task.offers = 0 if isinstance(self._schedule.timing, Rounds) else task.offers
             self._offer(task)
-        else:
-            self._put_off(task, "nobody is on the air")
 
     # How things go wrong
 
@@ -379,19 +310,15 @@ class Simulation:
         if not robot.alive or (fault.what == "motor" and not robot.able):
             return
         self.tally.breakdowns += 1
-        robot.able = False
         self._audience.broke_down(fault)
-        if robot.id in self._trips or robot.id in self._relocating:
-            self._motion.halt(robot)
+        self._journeys.break_down(robot)
         if fault.what == "all":
             self._presence.bury(robot, self.now)
 
-    def _summary(self, wall_time: float) -> Summary:
-        timing, radio = self._schedule.timing, self._talks.radio
-        figures = None
-        if isinstance(timing, Stream):
-            figures = stream_figures(
-                self.book, self.tally, len(self.fleet.robots), self.now, timing.backoff_most,
-                radio.beacons, self._handler.sensor_messages,
-            )  # fmt: skip
-        return summarise(self.fleet, self.tally, len(self.book.tasks), self.now, wall_time, figures)
+    def _summary(self, ended: Ending, wall_time: float) -> Summary:
+        run = PlayedRun(
+            self.fleet, self.tally, self.book, ended, self.now,
+            self._radio.beacons, self._handler.sensor_messages,
+        )  # fmt: skip
+        mode = self._mode
+        return summarise(run, wall_time, mode.longest_wait, streamed=not mode.one_at_a_time)

@@ -20,12 +20,15 @@ def print_summary(summary: Summary) -> None:
     )
     rows = [
         ("lifetime", _lifetime(s)),
+        ("the run ended", s.ended),
         ("events", f"{s.events} raised, {s.served} served, {s.failed} trips failed"),
+        ("not served", _not_served(s)),
         ("messages", f"{s.messages} ({s.messages / max(s.events, 1):.1f} an event{kinds})"),
         ("messages per robot", f"{s.messages_per_robot:.2f}"),
         ("hops", f"{s.hops_greedy} greedy, {s.hops_face} face"),
         ("energy predicted", f"{s.energy_predicted:.1f} J by Eq. (1) on straight lines"),
         ("energy drained", f"{s.energy_drained:.1f} J of {initial:.0f} J{drained_to_predicted}"),
+        ("of that", _accounts(s)),
         (
             "energy left per robot",
             f"{s.energy_left_mean:.1f} ± {s.energy_left_sd:.1f} J, least {s.energy_left_min:.1f} J",
@@ -36,11 +39,11 @@ def print_summary(summary: Summary) -> None:
             f"{s.distance_per_robot:.2f} m straight, {s.path_per_robot:.2f} m driven",
         ),
         ("closest robot found", f"{s.closest_found:.1%} of the events"),
+        *(_stream_rows(s.stream) if s.stream is not None else ()),
+        *_air_rows(s),
         ("simulated time", f"{s.simulated_time:.1f} s"),
         ("wall time", f"{s.wall_time:.2f} s"),
     ]
-    if s.stream is not None:
-        rows[2:2] = _stream_rows(s.stream)
     table = Table(
         title=f"{s.protocol} on {s.world}, {s.motion} motion, seed {s.seed}\n"
         f"{s.robots} robots, range {s.radio_range} m, search radius {s.search_radius} m",
@@ -53,11 +56,13 @@ def print_summary(summary: Summary) -> None:
 
 
 def _lifetime(summary: Summary) -> str:
-    if summary.stream is None:
-        return f"{summary.lifetime} rounds"
-    first, tolerated = summary.stream.lifetime_first, summary.stream.lifetime_tolerated
+    stream = summary.stream
+    if stream is None:
+        cut_off = ", or more: cut off before an event was not served"
+        return f"{summary.lifetime} rounds{cut_off if summary.censored else ''}"
+    first, tolerated = stream.lifetime_first, stream.lifetime_tolerated
     if first is None:
-        return "to the end: every event was served"
+        return f"{summary.lifetime} events, to the end: every event was served"
     kept = "to the end" if tolerated is None else f"until {tolerated:.1f} s"
     return (
         f"{summary.lifetime} events in {first:.1f} s, then one that was never served;"
@@ -65,29 +70,61 @@ def _lifetime(summary: Summary) -> str:
     )
 
 
+def _not_served(summary: Summary) -> str:
+    reasons = "; ".join(f"{count} {reason}" for reason, count in summary.lost_by_reason.items())
+    waiting, expired, lost = summary.waiting, summary.expired, summary.lost
+    each = f"{waiting} waiting, {expired} expired, {lost} lost"
+    return f"{each} ({reasons})" if reasons else each
+
+
+def _accounts(summary: Summary) -> str:
+    """What the energy went into, the largest part first."""
+    parts = sorted(summary.energy_by_account.items(), key=lambda part: -abs(part[1]))
+    return ", ".join(f"{name} {energy:.1f} J" for name, energy in parts if energy) or "nothing"
+
+
 def _stream_rows(stream: StreamFigures) -> list[tuple[str, str]]:
     """What only streams have."""
-    reasons = "; ".join(f"{count} {reason}" for reason, count in stream.lost_by_reason.items())
-    each = "none" if stream.messages_per_served is None else f"{stream.messages_per_served:.1f}"
-    joules = "none" if stream.energy_per_served is None else f"{stream.energy_per_served:.1f} J"
+    within = "none" if stream.within_deadline is None else f"{stream.within_deadline:.1%} of all"
     return [
-        (
-            "not served",
-            f"{stream.waiting} waiting, {stream.expired} expired, {stream.lost} lost"
-            + (f" ({reasons})" if reasons else ""),
-        ),
-        ("response time", _response(stream)),
+        ("reached by the deadline", within),
+        ("response, if served", _response(stream)),
         ("backlog", f"{stream.backlog_mean:.2f} events on average, {stream.backlog_most} at most"),
         ("throughput", f"{stream.throughput:.3f} events/s"),
         ("utilisation", f"robots engaged {stream.utilisation:.1%} of the time"),
-        ("an event served", f"{each} messages, {joules} by Eq. (1)"),
-        ("conversations", f"{stream.conversations}, {stream.broken} of them broken off"),
-        ("winners already taken", f"{stream.conflicts}"),
-        ("searches begun anew", f"{stream.restarts}"),
-        ("frames", f"{stream.repeated} repeated, {stream.unheard} heard by nobody"),
-        ("beacons, sensor messages", f"{stream.beacons}, {stream.sensor_messages}"),
-        ("breakdowns, relocations", f"{stream.breakdowns}, {stream.relocations}"),
+        ("an event served", _each(stream)),
     ]
+
+
+def _each(stream: StreamFigures) -> str:
+    if stream.messages_per_served is None:
+        return "none"
+    return (
+        f"{stream.messages_per_served:.1f} messages, {stream.energy_drained_per_served:.1f} J"
+        f" drained, {stream.energy_predicted_per_served:.1f} J by Eq. (1)"
+    )
+
+
+def _air_rows(s: Summary) -> list[tuple[str, str]]:
+    """What the radio, faults and sensors did, where they did anything."""
+    rows = [
+        ("conversations", f"{s.conversations}, {s.broken} broken off", s.broken),
+        ("winners already taken", f"{s.conflicts}", s.conflicts),
+        ("searches begun anew", f"{s.restarts}", s.restarts),
+        (
+            "frames",
+            f"{s.repeated} repeated, {s.unheard} heard by nobody, {s.beacons} beacons",
+            s.repeated + s.unheard + s.beacons,
+        ),
+        ("sensor messages", f"{s.sensor_messages}", s.sensor_messages),
+        (
+            "breakdowns, relocations",
+            f"{s.breakdowns}, {s.relocations}",
+            s.breakdowns + s.relocations,
+        ),
+    ]
+    streamed = s.stream is not None
+    return [(name, said) for name, said, count in rows if count or streamed]
 
 
 def _response(stream: StreamFigures) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fleet.robot import Robot
 from protocols.messages import Point, RobotId
 
-Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down"]
+Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down", "cut off"]
 
 
 class Trip(NamedTuple):
@@ -74,6 +74,9 @@ class Motion(Protocol):
 
     def halt(self, robot: Robot) -> None:
         """The robot's motor fails: it stops where it is, and its trip ends "broken down"."""
+
+    def stop(self) -> Sequence[Trip]:
+        """The run is over: the trips of all who are under way, "cut off" as they are."""
 
     def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
         """Who has planned a way since the last call, and its corners (k, 2) [m], in order.

@@ -199,6 +199,12 @@ class DrivenMotion:
                 self._tread()
                 return
 
+    def stop(self) -> Sequence[Trip]:
+        """The run is over: the trips of all who are under way, "cut off" as they are."""
+        self._finish(dict.fromkeys(range(len(self._voyages)), "cut off"))
+        trips, self._over = self._over, []
+        return trips
+
     def plans(self) -> Sequence[tuple[RobotId, NDArray[np.float64]]]:
         """Ways planned since the last call: those that bend, and all that were planned anew."""
         plans, self._plans = self._plans, []

@@ -121,11 +121,18 @@ class StraightMotion:
         """The robot's motor fails: its leg ends here and now."""
         for k, leg in enumerate(self._legs):
             if leg.robot is robot:
-                share = leg.share(self.now)
-                self._legs[k] = replace(
-                    leg, end=_between(leg, share), ends=self.now, energy=share * leg.energy,
-                    outcome="broken down",
-                )  # fmt: skip
+                self._legs[k] = self._cut_short(leg, "broken down")
+
+    def stop(self) -> Sequence[Trip]:
+        """The run is over: the trips of all who are under way, "cut off" as they are."""
+        self._legs = [self._cut_short(leg, "cut off") for leg in self._legs]
+        return self.advance(self.now)
+
+    def _cut_short(self, leg: _Leg, outcome: Outcome) -> _Leg:
+        """The leg, ended here and now."""
+        share = leg.share(self.now)
+        end, energy = _between(leg, share), share * leg.energy
+        return replace(leg, end=end, ends=self.now, energy=energy, outcome=outcome)
 
     def _as_it_lasts(self, leg: _Leg) -> _Leg:
         """The leg as the battery lasts, if it has paid for other things on the way, as talk."""

@@ -25,7 +25,7 @@ def test_events_are_assigned_together_and_nobody_twice():
     )  # fmt: skip
     assert summary.messages == 0
     assert summary.served > 150
-    assert summary.stream.conflicts == 0
+    assert summary.conflicts == 0
     waits = [task.taken - task.raised for task in simulation.book.tasks if task.offers == 1]
     assert min(waits) > 0.0
     assert max(wait for wait in waits if wait < 1e9) <= 1.0 + 1e-9

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -58,13 +57,8 @@ def runs_of(table: pa.Table, labels: Sequence[str]) -> Runs:
 
 
 def ended(runs: Runs) -> NDArray[np.bool_]:
-    """Whether each run came to the end of its network, rather than to a limit of rounds (n,)."""
-    if "stream_lifetime_first" in runs.columns:  # when the first event happened that was lost
-        lost: NDArray[np.bool_] = np.isfinite(np.asarray(runs["stream_lifetime_first"], float))
-        return lost
-    limits = [json.loads(text).get("rounds") for text in runs["scenario"].tolist()]
-    pairs = zip(runs["lifetime"].tolist(), limits, strict=True)
-    return np.array([limit is None or life < limit for life, limit in pairs], bool)
+    """Whether each run came to the end of its network, rather than to a limit (n,)."""
+    return np.array([not cut_off for cut_off in runs["censored"].tolist()], bool)
 
 
 def is_numeric(column: Column) -> bool:
