@@ -48,7 +48,7 @@ def shadows(deviation: float, distance: float, rng: np.random.Generator) -> Shad
 
 
 @kernel
-def shadow(field, ax, ay, bx, by):
+def shadow(field: Shadows, ax: float, ay: float, bx: float, by: float) -> float:
     """How much better than on average a and b [m] hear one another [dB]; the same both ways.
 
     Both directions of each wave are added. Their correlation is that of moving both ends by the
