@@ -35,6 +35,7 @@ from fleet.schedule import Schedule
 from fleet.simulation import Simulation
 from protocols.messages import Point
 from protocols.topology import Topology
+from worlds.arena import Arena
 from worlds.catalogue import World
 from worlds.events import Occurrence
 from worlds.ground import Ground, ground_of
@@ -73,7 +74,9 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         audience.noticed(said)
     points = start(world, ground, scenario, random["placement"], audience.placement_tried)
     radio_choice = radio_spec(scenario.radio)
-    lossy = radio_choice and lossy_radio(points, scenario, radio_choice, random["radio"])
+    lossy = radio_choice and lossy_radio(
+        points, scenario, radio_choice, random["radio"], world.arena
+    )
     live = audience.link_interval is not None  # links are asked for while robots drive
     topology = Topology(points, scenario.range, scenario.graph, compiled=live or None)
     radio: Radio = lossy or IdealRadio(topology)
@@ -91,7 +94,7 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         scenario.seed, scenario.search_radius,
     )  # fmt: skip
     handler = make_handler(scenario, world, random)
-    fleet = Fleet(labels, world.arena, scenario.robot, robots, topology, radio.reach, handler.field)
+    fleet = Fleet(labels, world.arena, scenario.robot, robots, topology, radio, handler.field)
     return Simulation(
         fleet,
         protocol,
@@ -177,12 +180,16 @@ def make_handler(
 
 
 def lossy_radio(
-    points: Sequence[Point], scenario: Scenario, spec: RadioSpec, rng: np.random.Generator
+    points: Sequence[Point],
+    scenario: Scenario,
+    spec: RadioSpec,
+    rng: np.random.Generator,
+    arena: Arena,
 ) -> LossyRadio:
-    """The radio of that kind among robots at ``points`` [m]."""
+    """The radio of that kind among robots at ``points`` [m] on that floor."""
     seed = int(rng.integers(2**62))
     try:
-        return LossyRadio(points, scenario.range, scenario.graph, spec, seed)
+        return LossyRadio(points, scenario.range, scenario.graph, spec, seed, arena)
     except ValueError as error:
         raise bad("graph", str(error)) from error
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fleet.radio import Radio
 from fleet.robot import Robot, RobotSpec
 from protocols.topology import Topology
 from worlds.arena import Arena
@@ -34,5 +32,5 @@ class Fleet:
     spec: RobotSpec
     robots: Sequence[Robot]
     topology: Topology  # the true one, whatever robots believe
-    reach: NDArray[np.float64] | float  # how far robots hear one another [m]: all, or pairs (n, n)
+    radio: Radio  # that they talk over
     field: SensorField | None = None  # of sensors that notice events

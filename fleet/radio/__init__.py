@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fleet.robot import Robot
 from protocols.messages import Heard, Point, RobotId, Transmission
 
@@ -36,8 +33,15 @@ class Radio(Protocol):
         """By robot: its neighbours in the routing graph, and where they were last known [m]."""
 
     @property
-    def reach(self) -> NDArray[np.float64] | float:
-        """How far robots hear one another [m], if nothing is lost: all, or pair by pair (n, n)."""
+    def reach(self) -> float:
+        """How far robots hear one another in the open [m], if nothing is lost."""
+
+    @property
+    def disc(self) -> bool:
+        """Whether they do so in all directions and everywhere."""
+
+    def hearers(self, robot: RobotId) -> Sequence[RobotId]:
+        """Who hears the robot where it is now, if nothing is lost; ascending."""
 
     @property
     def beacons(self) -> int:

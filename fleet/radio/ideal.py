@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import dist
 
 from fleet.radio import BrokenProtocol, Reception
 from fleet.robot import Robot
@@ -18,6 +19,7 @@ class IdealRadio:
 
     takes_time = False
     beacons = 0
+    disc = True
 
     def __init__(self, topology: Topology) -> None:
         self._topology = topology
@@ -32,6 +34,15 @@ class IdealRadio:
         elif heard:
             ids, positions = [robot.id for robot in heard], [robot.position for robot in heard]
             self._topology.move_all(ids, positions)
+
+    def hearers(self, robot: RobotId) -> list[RobotId]:
+        """Whoever is within range; ascending."""
+        x, y = self._topology.positions[robot]
+        return [
+            other
+            for other, place in enumerate(self._topology.positions)
+            if other != robot and dist(place, (x, y)) <= self.reach
+        ]
 
     def silence(self, robot: Robot) -> None:
         """Nobody hears the robot any more."""

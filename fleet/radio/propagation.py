@@ -1,4 +1,4 @@
-"""The compiled half of the lossy radio: who hears a frame, and what beacons leave behind.
+"""The compiled physical layer: how far robots hear one another, and which frames survive.
 
 Chance is a function of who, what and when, not of a sequence of draws: a frame's fate does not
 depend on how many others were sent before it, so runs that differ in one thing stay comparable.
@@ -9,18 +9,15 @@ Importing this module loads numba.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fleet.radio.shadowing import CUT, Shadows, shadow
+from fleet.radio.walls import Walls, crossings
 from protocols.compiled import kernel
-from protocols.topology.relinking import blocks, gather
 
-FloatArray: TypeAlias = NDArray[np.float64]
-IntArray: TypeAlias = NDArray[np.int64]
-
-FRAME, SHADOW, PHASE = 1, 2, 3  # what chance is asked for
+FRAME, PHASE, BACKOFF = 1, 3, 4  # what chance is asked for
 
 
 class Air(NamedTuple):
@@ -31,8 +28,9 @@ class Air(NamedTuple):
     loss: float  # probability that a frame is lost, wherever
     loss_at_range: float  # and that it is lost at the edge of the range
     falloff: float  # power of the distance with which that grows
-    shadowing: float  # standard deviation [dB]
-    path_loss: float  # exponent of the path loss, which turns decibels into range
+    path_loss: float  # exponent η of the path loss, which turns decibels into range
+    shadows: Shadows
+    walls: Walls
 
 
 @kernel
@@ -55,78 +53,52 @@ def chance(seed, purpose, a, b, c):
 
 
 @kernel
-def reach(air, u, v):
-    """How far ``u`` and ``v`` hear one another [m]: the range, shadowed log-normally.
+def reach(air, ax, ay, bx, by):
+    """How far robots at a and b [m] hear one another [m]: the range, shadowed, less the walls.
 
-    The same both ways and for the whole run. The shadowing is cut off at two deviations.
+    The same both ways, and for the whole run.
     """
-    if air.shadowing <= 0.0:
+    if air.shadows.deviation <= 0.0 and air.walls.loss <= 0.0:
         return air.radio_range
-    low, high = min(u, v), max(u, v)
-    a = chance(air.seed, SHADOW, low, high, 0)
-    b = chance(air.seed, SHADOW, low, high, 1)
-    normal = math.sqrt(-2.0 * math.log(1.0 - a)) * math.cos(2.0 * math.pi * b)
-    normal = min(max(normal, -2.0), 2.0)
-    return air.radio_range * 10.0 ** (air.shadowing * normal / (10.0 * air.path_loss))
-
-
-@kernel
-def all_reaches(air, n):
-    """How far each two of n robots hear one another [m]: (n, n)."""
-    found = np.zeros((n, n))
-    for u in range(n):
-        for v in range(u):
-            found[u, v] = found[v, u] = reach(air, u, v)
-    return found
+    better = shadow(air.shadows, ax, ay, bx, by)
+    better -= air.walls.loss * crossings(air.walls, ax, ay, bx, by)
+    return air.radio_range * 10.0 ** (better / (10.0 * air.path_loss))
 
 
 @kernel
 def farthest(air):
     """The longest that any link can be [m]."""
-    return air.radio_range * 10.0 ** (2.0 * air.shadowing / (10.0 * air.path_loss))
+    return air.radio_range * 10.0 ** (CUT * air.shadows.deviation / (10.0 * air.path_loss))
 
 
 @kernel
-def arrives(air, frame, sender, receiver, distance):
-    """Whether a frame reaches a receiver ``distance`` [m] away."""
-    limit = reach(air, sender, receiver)
+def arrives(air, frame, sender, receiver, ax, ay, bx, by):
+    """Whether a frame from a sender at a gets to a receiver at b [m]."""
+    limit, distance = reach(air, ax, ay, bx, by), math.hypot(bx - ax, by - ay)
     if distance > limit:
         return False
-    lost = air.loss_at_range * (distance / limit) ** air.falloff
+    return survives(air, frame, sender, receiver, distance / limit)
+
+
+@kernel
+def survives(air, frame, sender, receiver, share):
+    """Whether a frame over a ``share`` of how far the two hear one another is lost by chance."""
+    lost = air.loss_at_range * share**air.falloff
     through = (1.0 - air.loss) * (1.0 - lost)
     return chance(air.seed, FRAME, frame, sender, receiver) < through
 
 
 @kernel
-def broadcast(
+def unicast(
     air: Air,
     frame: int,
+    attempts: int,
     sender: int,
-    on_air: NDArray[np.bool_],
-    px: FloatArray,
-    py: FloatArray,
-    head: IntArray,
-    after: IntArray,
-    grid: FloatArray,
-    marked: NDArray[np.bool_],
-    near: IntArray,
-) -> int:
-    """Who hears a frame from ``sender``: their number; they are the first of ``near``."""
-    x, y = px[sender], py[sender]
-    count = gather(x, y, farthest(air), sender, px, py, head, after, grid, marked, near, 0)
-    heard = 0
-    for k in range(count):
-        w = near[k]
-        marked[w] = False
-        if on_air[w] and arrives(air, frame, sender, w, math.hypot(px[w] - x, py[w] - y)):
-            near[heard] = w
-            heard += 1
-    return heard
-
-
-@kernel
-def unicast(
-    air: Air, frame: int, attempts: int, sender: int, receiver: int, distance: float
+    receiver: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
 ) -> int:
     """Send a frame until it is acknowledged; how many times, negative if it never got through.
 
@@ -136,158 +108,8 @@ def unicast(
     heard = False
     for attempt in range(attempts):
         copy = 64 * frame + 2 * attempt
-        if arrives(air, copy, sender, receiver, distance):
+        if arrives(air, copy, sender, receiver, ax, ay, bx, by):
             heard = True
-            if arrives(air, copy + 1, receiver, sender, distance):
+            if arrives(air, copy + 1, receiver, sender, ax, ay, bx, by):
                 return attempt + 1
     return attempts if heard else -attempts
-
-
-@kernel
-def note(
-    u: int,
-    v: int,
-    x: float,
-    y: float,
-    time: float,
-    known: IntArray,
-    where_x: FloatArray,
-    where_y: FloatArray,
-    heard_at: FloatArray,
-    size: IntArray,
-    validity: float,
-) -> None:
-    """Robot ``u`` hears where ``v`` is. A full table drops what is oldest."""
-    slot, oldest = -1, 0
-    k = 0
-    while k < size[u]:
-        if known[u, k] == v:
-            slot = k
-            break
-        if time - heard_at[u, k] > validity:  # forgotten: the last entry takes its place
-            size[u] -= 1
-            last = size[u]
-            known[u, k], heard_at[u, k] = known[u, last], heard_at[u, last]
-            where_x[u, k], where_y[u, k] = where_x[u, last], where_y[u, last]
-            continue
-        if heard_at[u, k] < heard_at[u, oldest]:
-            oldest = k
-        k += 1
-    if slot < 0:
-        if size[u] < known.shape[1]:
-            slot = size[u]
-            size[u] += 1
-        else:
-            slot = min(oldest, known.shape[1] - 1)
-    known[u, slot] = v
-    where_x[u, slot], where_y[u, slot], heard_at[u, slot] = x, y, time
-
-
-@kernel
-def forget(
-    u: int,
-    v: int,
-    known: IntArray,
-    where_x: FloatArray,
-    where_y: FloatArray,
-    heard_at: FloatArray,
-    size: IntArray,
-) -> None:
-    """Robot ``u`` strikes ``v`` off its table."""
-    for k in range(size[u]):
-        if known[u, k] == v:
-            size[u] -= 1
-            last = size[u]
-            known[u, k], heard_at[u, k] = known[u, last], heard_at[u, last]
-            where_x[u, k], where_y[u, k] = where_x[u, last], where_y[u, last]
-            return
-
-
-@kernel
-def beacons_until(
-    time: float,
-    air: Air,
-    interval: float,
-    jitter: float,
-    validity: float,
-    due: FloatArray,
-    sent: IntArray,
-    on_air: NDArray[np.bool_],
-    px: FloatArray,
-    py: FloatArray,
-    head: IntArray,
-    after: IntArray,
-    grid: FloatArray,
-    marked: NDArray[np.bool_],
-    near: IntArray,
-    known: IntArray,
-    where_x: FloatArray,
-    where_y: FloatArray,
-    heard_at: FloatArray,
-    size: IntArray,
-) -> int:
-    """Send every beacon that is due up to ``time`` [s], in the order of time; how many.
-
-    ``due`` (n,): when each robot beacons next [s]; ``sent`` (n,): how many it has sent. All
-    are sent from where robots are now, so call it as often as that matters. The tables are
-    ``known``, ``where_x``, ``where_y``, ``heard_at`` (n, capacity) and ``size`` (n,).
-    """
-    count = 0
-    while True:
-        robot = int(np.argmin(due))
-        now = due[robot]
-        if now > time:
-            return count
-        sent[robot] += 1
-        step = 1.0 + jitter * (chance(air.seed, PHASE, robot, sent[robot], 0) - 0.5)
-        due[robot] = now + interval * step
-        if not on_air[robot]:
-            continue
-        count += 1
-        frame = -sent[robot]  # beacons are numbered apart from messages
-        heard = broadcast(air, frame, robot, on_air, px, py, head, after, grid, marked, near)
-        for k in range(heard):
-            note(
-                near[k], robot, px[robot], py[robot], now,
-                known, where_x, where_y, heard_at, size, validity,
-            )  # fmt: skip
-
-
-@kernel
-def local_links(
-    u: int,
-    x: float,
-    y: float,
-    time: float,
-    validity: float,
-    graph: int,
-    known: IntArray,
-    where_x: FloatArray,
-    where_y: FloatArray,
-    heard_at: FloatArray,
-    size: IntArray,
-    chosen: IntArray,
-) -> int:
-    """The slots of the neighbours that ``u`` at (x, y) [m] keeps in its routing graph.
-
-    Each robot reduces its own table, by the rule of the whole graph; where tables differ, so
-    do the ends of a link. Returns their number; they are the first of ``chosen``.
-    """
-    count = 0
-    for k in range(size[u]):
-        if time - heard_at[u, k] > validity:
-            continue
-        free = True
-        for j in range(size[u]):
-            if j == k or time - heard_at[u, j] > validity:
-                continue
-            if blocks(
-                graph, known[u, j], u, known[u, k],
-                where_x[u, j], where_y[u, j], x, y, where_x[u, k], where_y[u, k],
-            ):  # fmt: skip
-                free = False
-                break
-        if free:
-            chosen[count] = k
-            count += 1
-    return count

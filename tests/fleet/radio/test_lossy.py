@@ -7,21 +7,32 @@ from math import dist
 import numpy as np
 import pytest
 from hand_drawn import random_connected, random_points
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from fleet.power import Battery
-from fleet.radio import BrokenProtocol, propagation
+from fleet.radio import BrokenProtocol, kernels, propagation
 from fleet.radio.lossy import LossyRadio, RadioSpec
+from fleet.radio.shadowing import shadow
+from fleet.radio.walls import crossings, walls
 from fleet.robot import Robot
 from protocols.messages import Transmission
 from protocols.topology import Topology
+from worlds.arena import Arena
+from worlds.shapes import Polygon, square
 
 
 def radio(points, *, radio_range=2.5, graph="gabriel", seed=1, **spec):
-    return LossyRadio(points, radio_range, graph, RadioSpec(**spec), seed)
+    return LossyRadio(points, radio_range, graph, RadioSpec(**spec), seed, Arena())
 
 
 def robot_at(id, place):
     return Robot(id, place, 0.0, Battery(1.0), 2.5, [{}] * 99, None)
+
+
+def connected_components_of(n, links):
+    graph = coo_array((np.ones(len(links)), tuple(np.array(sorted(links)).T)), (n, n))
+    return connected_components(graph)[0]
 
 
 def test_chance_is_even_and_depends_on_everything():
@@ -119,14 +130,60 @@ def test_loss_grows_with_distance():
     assert share(2.0) == pytest.approx(1 - 0.8 * 0.8**4, abs=0.04)
 
 
-def test_shadowing_makes_each_link_s_range_its_own_and_the_same_both_ways():
-    air = propagation.Air(5, 2.5, 0.0, 0.0, 4.0, 4.0, 3.0)
-    reaches = np.array([propagation.reach(air, 0, v) for v in range(1, 2000)])
-    assert np.median(reaches) == pytest.approx(2.5, rel=0.03)
-    decibels = 10.0 * air.path_loss * np.log10(reaches / 2.5)
-    assert decibels.std() == pytest.approx(4.0 * 0.96, rel=0.04)  # cut off at two deviations
-    assert reaches.max() <= propagation.farthest(air)
-    assert propagation.reach(air, 3, 8) == propagation.reach(air, 8, 3)
+def test_shadowing_and_walls_change_how_far_a_link_reaches_the_same_both_ways():
+    wall = Arena(10.0, 10.0, obstacles=(square(5.0, 5.0, 0.5),))
+    plain, shadowed, walled, both = (
+        kernels.air(RadioSpec(shadowing=s, wall_loss=w), 2.5, 5, wall)
+        for s, w in ((0.0, 0.0), (4.0, 0.0), (0.0, 6.0), (4.0, 6.0))
+    )
+    rng = np.random.default_rng(3)
+    for ax, ay, bx, by in rng.uniform(0.0, 10.0, (50, 4)):
+        reaches = [propagation.reach(air, ax, ay, bx, by) for air in (plain, shadowed, walled)]
+        decibels = shadow(shadowed.shadows, ax, ay, bx, by)
+        assert reaches[0] == 2.5
+        assert reaches[1] == pytest.approx(2.5 * 10.0 ** (decibels / 30.0))
+        assert reaches[1] <= propagation.farthest(shadowed)
+        together = reaches[1] * reaches[2] / 2.5
+        assert propagation.reach(both, ax, ay, bx, by) == pytest.approx(together)
+        assert propagation.reach(both, bx, by, ax, ay) == pytest.approx(together)
+    through, beside = (4.0, 5.0, 6.0, 5.0), (4.0, 6.0, 6.0, 6.0)
+    assert propagation.reach(walled, *through) == pytest.approx(2.5 * 10.0 ** (-6.0 / 30.0))
+    assert propagation.reach(walled, *beside) == 2.5
+
+
+def test_walls_are_counted_one_by_one_however_thin():
+    """Three shelves of a centimetre: between none and three are crossed, as by their corners."""
+    thin = tuple(
+        Polygon(((x, 2.0), (x + 0.01, 2.0), (x + 0.01, 8.0), (x, 8.0))) for x in (2.0, 4.0, 6.0)
+    )
+    floor = walls(Arena(10.0, 10.0, obstacles=thin), 3.0)
+    assert [crossings(floor, 1.0, 5.0, x, 5.0) for x in (1.5, 3.0, 5.0, 7.0)] == [0, 1, 2, 3]
+    assert crossings(floor, 1.0, 9.0, 7.0, 9.0) == 0
+    assert crossings(floor, 3.0, 3.0, 3.0, 7.0) == 0
+
+
+@pytest.mark.parametrize("shadowing", [3.0, 6.0])
+def test_under_shadowing_a_link_is_cut_only_by_witnesses_that_both_ends_hear(shadowing):
+    """So that who is connected on the air stays connected in the routing graph."""
+    points = random_connected(80, 10.0, 2.5, np.random.default_rng(8))
+    air = radio(points, shadowing=shadowing)
+    hear = {
+        (u, v)
+        for u in range(80)
+        for v in range(80)
+        if u != v
+        and dist(points[u], points[v]) <= propagation.reach(air.air, *points[u], *points[v])
+    }
+    for u, near in enumerate(air.tables):
+        for v in near:
+            assert (u, v) in hear
+        for v in {v for a, v in hear if a == u} - set(near):
+            middle = [(points[u][k] + points[v][k]) / 2 for k in (0, 1)]
+            inside = [w for w in range(80) if dist(points[w], middle) <= dist(points[u], middle)]
+            assert any((u, w) in hear and (v, w) in hear for w in inside)
+    on_air = connected_components_of(80, hear)
+    routed = {(u, v) for u, near in enumerate(air.tables) for v in near}
+    assert connected_components_of(80, routed) == on_air
 
 
 def test_two_radios_of_one_seed_agree_whatever_was_sent_before():
@@ -159,7 +216,8 @@ def test_tables_hold_the_nearest_in_time_when_there_is_no_room():
     "wrong",
     [
         {"loss": 1.2}, {"latency": -1.0}, {"retries": 99}, {"validity": 0.5}, {"path_loss": 0.0},
-        {"beacon_interval": 0.0}, {"shadowing": float("nan")},
+        {"beacon_interval": 0.0}, {"shadowing": float("nan")}, {"wall_loss": -1.0},
+        {"shadow_distance": 0.0},
     ],
 )  # fmt: skip
 def test_bad_values_are_refused_with_a_sentence(wrong):
