@@ -110,7 +110,7 @@ class HearsayRadio(Generic[Spec]):
         capacity = int(min(max(32, 3 * degree), n))
         mutual = not spec.a_disc
         heard = kernels.tables.nothing_heard(n, capacity, spec.validity, mutual=mutual)
-        self.tables = kernels.tables.Tables(heard, GRAPHS[graph], self._where)
+        self.tables = kernels.tables.HearsayTables(heard, GRAPHS[graph], self._where)
         self._now = 0.0
         greetings = 2 if mutual else 1  # who is to list whom it hears must have heard them
         self._rota = kernels.beacons.rota(

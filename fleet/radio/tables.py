@@ -138,7 +138,7 @@ def local_links(
     return count
 
 
-class Tables(Sequence[Mapping[RobotId, Point]]):
+class HearsayTables(Sequence[Mapping[RobotId, Point]]):
     """The robots' routing tables, worked out when they are looked at."""
 
     def __init__(self, heard: Heard, graph: int, where: Where) -> None:
