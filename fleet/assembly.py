@@ -9,6 +9,7 @@ from math import pi
 
 import numpy as np
 
+from fleet.agenda import Agenda
 from fleet.faults import Blackout
 from fleet.fleet import Fleet, RunLabels
 from fleet.handler import Handler
@@ -17,8 +18,8 @@ from fleet.observer import Audience, Observer
 from fleet.placement import start
 from fleet.power import Battery
 from fleet.radio import Radio
+from fleet.radio.hearsay import Scattered
 from fleet.radio.ideal import IdealRadio
-from fleet.radio.lossy import LossyRadio, RadioSpec
 from fleet.results import Summary
 from fleet.robot import Robot
 from fleet.scenario.choices import (
@@ -33,9 +34,7 @@ from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
 from fleet.schedule import Schedule
 from fleet.simulation import Simulation
-from protocols.messages import Point
 from protocols.topology import Topology
-from worlds.arena import Arena
 from worlds.catalogue import World
 from worlds.events import Occurrence
 from worlds.ground import Ground, ground_of
@@ -73,13 +72,11 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     for said in filter(None, (*world.notices, ground.notice())):
         audience.noticed(said)
     points = start(world, ground, scenario, random["placement"], audience.placement_tried)
-    radio_choice = radio_spec(scenario.radio)
-    lossy = radio_choice and lossy_radio(
-        points, scenario, radio_choice, random["radio"], world.arena
-    )
+    agenda = Agenda()
     live = audience.link_interval is not None  # links are asked for while robots drive
     topology = Topology(points, scenario.range, scenario.graph, compiled=live or None)
-    radio: Radio = lossy or IdealRadio(topology)
+    scattered = Scattered(points, scenario.range, scenario.graph, world.arena)
+    radio = make_radio(scenario, scattered, random["radio"], agenda) or IdealRadio(topology)
     headings = (2.0 * pi * random["heading"].random(len(points)) - pi).tolist()
     robots = [
         Robot(
@@ -99,6 +96,7 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         fleet,
         protocol,
         radio,
+        agenda,
         motion,
         handler,
         make_schedule(scenario, ground, len(robots), random, audience.noticed),
@@ -179,17 +177,16 @@ def make_handler(
     return Handler(shares, scenario.handler, field, random["sensors"])
 
 
-def lossy_radio(
-    points: Sequence[Point],
-    scenario: Scenario,
-    spec: RadioSpec,
-    rng: np.random.Generator,
-    arena: Arena,
-) -> LossyRadio:
-    """The radio of that kind among robots at ``points`` [m] on that floor."""
+def make_radio(
+    scenario: Scenario, fleet: Scattered, rng: np.random.Generator, agenda: Agenda
+) -> Radio | None:
+    """The radio that was asked for, among the fleet's robots; None: the ideal one."""
+    spec = radio_spec(scenario.radio)
+    if spec is None:
+        return None
     seed = int(rng.integers(2**62))
     try:
-        return LossyRadio(points, scenario.range, scenario.graph, spec, seed, arena)
+        return spec.over(fleet, seed, agenda)
     except ValueError as error:
         raise bad("graph", str(error)) from error
 

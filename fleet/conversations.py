@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from math import inf
 
 from fleet.agenda import Agenda
 from fleet.observer import Audience, Excerpt
-from fleet.radio import BrokenProtocol, Radio
+from fleet.power import ExtraPower
+from fleet.radio import BrokenProtocol, Radio, Reception, Transmit
 from fleet.robot import Robot
 from fleet.tally import RADIO, Tally
 from fleet.tasks import Task
@@ -59,7 +61,7 @@ class Conversations:
     agenda: Agenda
     tally: Tally
     audience: Audience
-    frame_energy: float  # that a sender pays for each frame [J]
+    energy: ExtraPower  # what frames cost
     concluded: Concluded
     broken: Broken
     under_way: int = 0
@@ -71,14 +73,16 @@ class Conversations:
         task.offers += 1
         self.tally.conversations += 1
         words = self.protocol(self.view, task.event, source)
-        if self.radio.takes_time:
+        if self.radio.instant is None:
             self._go_on(Dialogue(task, source, words), None, now)
         else:
-            self._play_at_once(task, words, now)
+            self._play_at_once(task, words, self.radio.instant, now)
 
-    def _play_at_once(self, task: Task, words: Conversation, now: float) -> None:
+    def _play_at_once(
+        self, task: Task, words: Conversation, transmit: Transmit, now: float
+    ) -> None:
         """The whole conversation, over a radio that takes no time and loses nothing."""
-        say, transmit, kinds = words.send, self.radio.transmit, self.tally.kinds
+        say, kinds, costly = words.send, self.tally.kinds, self._costly
         first, listened = self._number + 1, self.audience.listens
         most = self._number + WORDS_PER_ROBOT * len(self.robots)
         said: list[Transmission] = []
@@ -98,8 +102,8 @@ class Conversations:
                 if listened:
                     said.append(transmission)
                     by_whom.append(heard)
-                if self.frame_energy:
-                    self._charge(transmission, 1)
+                if costly:
+                    self._charge(transmission, heard, 1)
         except StopIteration as end:
             award: Award = end.value
         finally:
@@ -125,23 +129,35 @@ class Conversations:
                 self._break(talk, f"robot {transmission.sender} fell silent")
                 return
             heard = ()  # it would have said it, were it still there
-        reception = self.radio.transmit(transmission, now)
+        self.radio.send(transmission, now, partial(self._sent, talk, transmission))
+
+    def _sent(
+        self, talk: Dialogue, transmission: Transmission, reception: Reception, now: float
+    ) -> None:
+        """A transmission has been made: write it down, and go on once its sender knows."""
         self.tally.kinds[transmission.kind] += 1
         self._number += 1
         attempts = reception.attempts
         self.tally.repeated += attempts - 1
-        self._charge(transmission, attempts)
+        self._charge(transmission, reception.heard, attempts)
         if self.audience.listens:
             line = [transmission], [reception.heard], [attempts]
             self.audience.transmitted(Excerpt(self._number, now, talk.task.event.id, *line))
         heard = self._in_time(talk, transmission, reception.heard, now)
         self._wait(talk, heard, now + reception.delay)
 
-    def _charge(self, transmission: Transmission, attempts: int) -> None:
-        """What its sender pays for a transmission."""
-        if self.frame_energy:
+    @property
+    def _costly(self) -> bool:
+        return self.energy.transmission > 0.0 or self.energy.reception > 0.0
+
+    def _charge(self, transmission: Transmission, heard: Heard, attempts: int) -> None:
+        """What its sender, and those who heard it, pay for a transmission."""
+        sent, received = self.energy.transmission * attempts, self.energy.reception
+        if sent:
             battery = self.robots[transmission.sender].battery
-            self.tally.accounts[RADIO] += battery.drain(self.frame_energy * attempts)
+            self.tally.accounts[RADIO] += battery.drain(sent)
+        for robot in heard if received else ():
+            self.tally.accounts[RADIO] += self.robots[robot].battery.drain(received)
 
     def _in_time(
         self, talk: Dialogue, transmission: Transmission, heard: Heard, now: float

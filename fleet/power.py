@@ -50,9 +50,11 @@ class ExtraPower:
     per_wheel: bool = False  # each wheel takes half of P at its own speed, not at the body's
     idle: float = 0.0  # [W] of a robot that stands: parked, or waiting to set off
     transmission: float = 0.0  # [J] for each frame sent; charged by the simulation
+    reception: float = 0.0  # [J] for each frame received; charged by the simulation
+    listening: float = 0.0  # [W] of the radio of a robot on the air, standing or driving
 
     def __post_init__(self) -> None:
-        for name in ("idle", "transmission"):
+        for name in ("idle", "transmission", "reception", "listening"):
             value = getattr(self, name)
             if not 0.0 <= value < inf:
                 raise ValueError(f"{name} power is {value}; expected 0 or more")

@@ -14,7 +14,7 @@ from fleet.observer import Audience
 from fleet.radio import Radio
 from fleet.results import Ending
 from fleet.robot import Robot, SeenRobot
-from fleet.tally import STANDING, Tally
+from fleet.tally import RADIO, STANDING, Tally
 from protocols.messages import Point, RobotId, View
 
 REFRESH = 0.1  # links are at most so old while robots drive and anybody talks or beacons [s]
@@ -56,6 +56,7 @@ class Presence:
         self._true_links = audience.present and radio.takes_time
         self._blackouts: list[Blackout] = []
         self._idle = fleet.spec.extra.idle  # [W]
+        self._listening = fleet.spec.extra.listening  # [W]
         self._paid = [0.0] * len(fleet.robots)  # until when each has paid for standing [s]
 
     def slice_end(self, now: float, due: float) -> float:
@@ -89,21 +90,26 @@ class Presence:
             self.follow(now)
 
     def stand(self, now: float) -> None:
-        """Robots that stand pay idle power up to now; those that cannot are gone.
+        """Robots pay for their radios up to now, and idle power if they stand; those that stand
+        and cannot are gone.
 
-        Under way it is motion that pays. Ask for this before somebody sets off.
+        Under way it is motion that pays the rest. Ask for this before somebody sets off.
         """
-        if not self._motion.moving:
+        moving, accounts = self._motion.moving, self._tally.accounts
+        if not moving:
             self._looked = now
-        if not self._idle:
+        if not self._idle and not self._listening:
             return
-        for robot in self._motion.moving:
-            self._paid[robot.id] = now
+        under_way = {robot.id for robot in moving}
         for robot in self._fleet.robots:
-            if robot.alive and self._paid[robot.id] < now:
-                spent = robot.battery.drain(self._idle * (now - self._paid[robot.id]))
-                self._tally.accounts[STANDING] += spent
-                self._paid[robot.id] = now
+            time = now - self._paid[robot.id]
+            if not robot.alive or time <= 0.0:
+                continue
+            self._paid[robot.id] = now
+            if robot.on_air:
+                accounts[RADIO] += robot.battery.drain(self._listening * time)
+            if robot.id not in under_way:
+                accounts[STANDING] += robot.battery.drain(self._idle * time)
                 if robot.battery.charge == 0.0:
                     self.bury(robot, now)
 

@@ -7,6 +7,7 @@ from math import fsum, sqrt
 from typing import Any, Literal, NamedTuple
 
 from fleet.fleet import Fleet
+from fleet.radio import AirCounts
 from fleet.service import StreamFigures, never_served, stream_figures
 from fleet.tally import Tally
 from fleet.tasks import OPEN, State, TaskBook
@@ -73,6 +74,9 @@ class Summary:
     repeated: int  # frames sent again because nobody acknowledged them
     unheard: int  # transmissions that nobody heard
     beacons: int
+    frames_on_air: int  # of all kinds, where robots take turns
+    frames_drowned: int  # of these, by others, at somebody who would have received them
+    doubts: int  # frames that were heard, though their senders could not know
     sensor_messages: int  # hops of reports through the sensor field
     breakdowns: int
     relocations: int  # trips to places that are no events
@@ -97,7 +101,7 @@ class PlayedRun(NamedTuple):
     book: TaskBook
     ended: Ending
     time: float  # [s]
-    beacons: int
+    air: AirCounts
     sensor_messages: int
 
 
@@ -154,7 +158,10 @@ def summarise(run: PlayedRun, wall_time: float, longest_wait: float, *, streamed
         restarts=tally.restarts,
         repeated=tally.repeated,
         unheard=tally.unheard,
-        beacons=run.beacons,
+        beacons=run.air.beacons,
+        frames_on_air=run.air.frames,
+        frames_drowned=run.air.drowned,
+        doubts=run.air.doubts,
         sensor_messages=run.sensor_messages,
         breakdowns=tally.breakdowns,
         relocations=tally.relocations,

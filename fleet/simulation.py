@@ -37,6 +37,7 @@ class Simulation:
         fleet: Fleet,
         protocol: ProtocolFunction | Dispatcher,
         radio: Radio,
+        agenda: Agenda,
         motion: Motion,
         handler: Handler,
         schedule: Schedule,
@@ -53,7 +54,7 @@ class Simulation:
         self._motion = motion
         self._radio = radio
         self._audience = audience
-        self._agenda = Agenda()
+        self._agenda = agenda
         self._presence = Presence(
             fleet, radio, motion, audience, self.tally, many_drive=not mode.one_at_a_time
         )
@@ -66,7 +67,7 @@ class Simulation:
         else:
             self._talks = Conversations(
                 protocol, self._presence.view, fleet.robots, radio, self._agenda, self.tally,
-                audience, fleet.spec.extra.transmission, self._concluded, self._broken_off,
+                audience, fleet.spec.extra, self._concluded, self._broken_off,
             )  # fmt: skip
         self._unnoticed = 0  # events in a row
         self._appraisals: dict[Point, dict[int, Appraisal]] | None = {} if audience.weighs else None
@@ -318,7 +319,7 @@ class Simulation:
     def _summary(self, ended: Ending, wall_time: float) -> Summary:
         run = PlayedRun(
             self.fleet, self.tally, self.book, ended, self.now,
-            self._radio.beacons, self._handler.sensor_messages,
+            self._radio.counts(), self._handler.sensor_messages,
         )  # fmt: skip
         mode = self._mode
         return summarise(run, wall_time, mode.longest_wait, streamed=not mode.one_at_a_time)

@@ -14,6 +14,7 @@ from fleet.faults import Blackout, Faults, PlannedBreakdown
 from fleet.modes import Rounds, Stream
 from fleet.motion.options import DriveOptions
 from fleet.power import ExtraPower, PowerModel
+from fleet.radio.csma import CsmaSpec
 from fleet.radio.lossy import RadioSpec
 from fleet.results import Summary
 from fleet.robot import RobotSpec
@@ -67,6 +68,7 @@ DESCRIBED = [
     ("`rounds`: ", of_class(Rounds)),
     ("`stream`: ", of_class(Stream)),
     ("`lossy`: ", of_class(RadioSpec)),
+    ("`csma`: ", of_class(CsmaSpec)),
     ("## Faults", of_class(Faults)),
     ("A planned breakdown:", of_class(PlannedBreakdown)),
     ("A blackout:", of_class(Blackout)),

@@ -116,6 +116,11 @@ def _air_rows(s: Summary) -> list[tuple[str, str]]:
             f"{s.repeated} repeated, {s.unheard} heard by nobody, {s.beacons} beacons",
             s.repeated + s.unheard + s.beacons,
         ),
+        (
+            "on the air",
+            f"{s.frames_on_air} frames, {s.frames_drowned} drowned, {s.doubts} left in doubt",
+            s.frames_on_air,
+        ),
         ("sensor messages", f"{s.sensor_messages}", s.sensor_messages),
         (
             "breakdowns, relocations",

@@ -20,6 +20,8 @@ from fleet.radio.tables import Heard, note, tell
 from protocols.compiled import kernel
 from protocols.topology.relinking import gather
 
+NEAREST = 0.01  # robots are taken to be at least so far apart, as antennas are [m]
+
 
 class Places(NamedTuple):
     """Where robots are, in cells: see :class:`protocols.topology.cells.Cells`."""
@@ -85,11 +87,11 @@ def postponed(rota: Rota, seed: int) -> int:
 
 
 @kernel
-def _around(air, places, robot):
-    """Who might hear the robot: how many, and they are the first of ``near``."""
+def _around(places, robot, distance):
+    """Who is within a distance [m]: how many, and they are the first of ``near``."""
     p = places
     count = gather(
-        p.x[robot], p.y[robot], farthest(air), robot,
+        p.x[robot], p.y[robot], distance, robot,
         p.x, p.y, p.head, p.after, p.grid, p.marked, p.near, 0,
     )  # fmt: skip
     for k in range(count):
@@ -103,10 +105,36 @@ def hearers(air: Air, places: Places, robot: int, on_air: NDArray[np.bool_]) -> 
     p = places
     x, y = p.x[robot], p.y[robot]
     heard = 0
-    for k in range(_around(air, places, robot)):
+    for k in range(_around(places, robot, farthest(air))):
         w = p.near[k]
         if on_air[w] and math.hypot(p.x[w] - x, p.y[w] - y) <= reach(air, x, y, p.x[w], p.y[w]):
             p.near[heard] = w
+            heard += 1
+    return heard
+
+
+@kernel
+def audible(
+    air: Air,
+    places: Places,
+    robot: int,
+    on_air: NDArray[np.bool_],
+    weakest: float,
+    power: NDArray[np.float64],
+) -> int:
+    """Whom a frame of the robot's matters to, if only as noise: how many, first of ``near``.
+
+    ``power``: how strong it is there, over the weakest that can be received.
+    """
+    p = places
+    x, y = p.x[robot], p.y[robot]
+    heard = 0
+    for k in range(_around(places, robot, farthest(air) * weakest ** (-1.0 / air.path_loss))):
+        w = p.near[k]
+        away = max(math.hypot(p.x[w] - x, p.y[w] - y), NEAREST)
+        here = (reach(air, x, y, p.x[w], p.y[w]) / away) ** air.path_loss
+        if on_air[w] and here >= weakest:
+            p.near[heard], power[heard] = w, here
             heard += 1
     return heard
 
@@ -117,7 +145,7 @@ def broadcast(air: Air, places: Places, frame: int, sender: int, on_air: NDArray
     p = places
     x, y = p.x[sender], p.y[sender]
     heard = 0
-    for k in range(_around(air, places, sender)):
+    for k in range(_around(places, sender, farthest(air))):
         w = p.near[k]
         if on_air[w] and arrives(air, frame, sender, w, x, y, p.x[w], p.y[w]):
             p.near[heard] = w

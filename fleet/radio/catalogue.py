@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from fleet.radio.csma import CsmaSpec
+from fleet.radio.hearsay import RadioParameters
 from fleet.radio.lossy import RadioSpec
 
 
 class Entry(NamedTuple):
     """What a radio's parameters make of it (None: ideal), and where it comes from."""
 
-    function: Callable[..., RadioSpec | None]
+    function: Callable[..., RadioParameters | None]
     source: str
 
 
@@ -22,4 +24,5 @@ def ideal() -> None:
 RADIOS: dict[str, Entry] = {
     "ideal": Entry(ideal, "Stanulovic et al., Sensors 21(18):6149, 2021, section 3"),
     "lossy": Entry(RadioSpec, "beacons as GPSR, Karp and Kung, MobiCom 2000"),
+    "csma": Entry(CsmaSpec, "IEEE 802.15.4-2020, unslotted CSMA/CA; or IEEE 802.11-2020, DCF"),
 }

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from fleet.radio import BrokenProtocol
+from fleet.agenda import Agenda
+from fleet.radio import AirCounts, BrokenProtocol, Radio
 from fleet.robot import Robot
 from protocols.messages import Point, RobotId, Transmission
 from worlds.arena import Arena
@@ -67,6 +68,15 @@ class AirSpec:
 Spec = TypeVar("Spec", bound=AirSpec)
 
 
+class Scattered(NamedTuple):
+    """Robots at their starting places, as their radios find them."""
+
+    points: Sequence[Point]  # [m]
+    radio_range: float  # r [m]
+    graph: str  # that they route on
+    arena: Arena
+
+
 class HearsayRadio(Generic[Spec]):
     """The air between robots that only know what they have heard.
 
@@ -75,30 +85,25 @@ class HearsayRadio(Generic[Spec]):
     """
 
     takes_time = True
+    instant: None = None
 
-    def __init__(
-        self,
-        robots: Sequence[Point],
-        radio_range: float,
-        graph: str,
-        spec: Spec,
-        seed: int,
-        arena: Arena,
-    ) -> None:
+    def __init__(self, spec: Spec, fleet: Scattered, seed: int, agenda: Agenda) -> None:
         from fleet.radio import kernels
         from protocols.topology.cells import Cells
         from protocols.topology.neighbourhood import GRAPHS
 
-        if graph not in GRAPHS:
+        robots, radio_range = fleet.points, fleet.radio_range
+        if fleet.graph not in GRAPHS:
             raise ValueError(
-                f"graph is {graph!r}, which no robot can tell from its neighbours alone;"
+                f"graph is {fleet.graph!r}, which no robot can tell from its neighbours alone;"
                 f" expected {', '.join(map(repr, GRAPHS))}, or radio ideal"
             )
         self.spec = spec
         self.beacons = 0
+        self.agenda = agenda
         self._kernels = kernels
         self.reach, self.disc = radio_range, spec.a_disc
-        self.air: Air = kernels.air(spec, radio_range, seed, arena)
+        self.air: Air = kernels.air(spec, radio_range, seed, fleet.arena)
         n = len(robots)
         self._cells = Cells(robots, 0.5 * radio_range)
         for robot, position in enumerate(robots):
@@ -110,19 +115,23 @@ class HearsayRadio(Generic[Spec]):
         capacity = int(min(max(32, 3 * degree), n))
         mutual = not spec.a_disc
         heard = kernels.tables.nothing_heard(n, capacity, spec.validity, mutual=mutual)
-        self.tables = kernels.tables.HearsayTables(heard, GRAPHS[graph], self._where)
+        self.tables = kernels.tables.HearsayTables(heard, GRAPHS[fleet.graph], self._where)
         self._now = 0.0
         greetings = 2 if mutual else 1  # who is to list whom it hears must have heard them
         self._rota = kernels.beacons.rota(
             self.air, n, spec.beacon_interval, spec.beacon_jitter, greetings
         )
-        self.beacon(0.0)  # everybody has said hello before the run begins
+        self._announce(0.0)  # everybody has said hello before the run begins
 
     def refresh(self, moved: Iterable[Robot], time: float) -> None:
         """Robots are where they are now; beacons up to ``time`` [s] have been sent."""
         for robot in moved:
             self._cells.move(robot.id, robot.position)
         self.beacon(time)
+
+    def counts(self) -> AirCounts:
+        """What went over the air so far."""
+        return AirCounts(self.beacons)
 
     def hearers(self, robot: RobotId) -> list[RobotId]:
         """Who hears the robot where it is now, if nothing is lost; ascending."""
@@ -138,7 +147,11 @@ class HearsayRadio(Generic[Spec]):
         self.on_air[robot.id] = True
 
     def beacon(self, time: float) -> None:
-        """Send the beacons that are due up to ``time`` [s], which it is now."""
+        """It is ``time`` [s] now; beacons that were due until now have been sent."""
+        self._announce(time)
+
+    def _announce(self, time: float) -> None:
+        """Send the beacons that are due up to ``time`` [s], each heard but by chance."""
         self._now = time
         self.beacons += self._kernels.beacons.beacons_until(
             time, self.air, self._rota, self.places, self.tables.heard, self.on_air
@@ -172,3 +185,14 @@ def _area(positions: Sequence[Point]) -> float:
     places = np.array(positions).reshape(-1, 2)
     span = np.maximum(np.ptp(places, axis=0), 1.0)
     return float(span[0] * span[1])
+
+
+class RadioParameters(Protocol):
+    """The parameters of a radio that robots know one another by."""
+
+    def over(self, fleet: Scattered, seed: int, agenda: Agenda) -> Radio:
+        """The radio of this kind among these robots.
+
+        Raises:
+            ValueError: they cannot tell their routing graph from what they hear.
+        """

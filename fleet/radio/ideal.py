@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from math import dist
 
-from fleet.radio import BrokenProtocol, Reception
+from fleet.radio import AirCounts, BrokenProtocol, Received, Reception
 from fleet.robot import Robot
 from protocols.messages import Point, RobotId, Transmission
 from protocols.topology import Topology
@@ -18,11 +18,11 @@ class IdealRadio:
     """
 
     takes_time = False
-    beacons = 0
     disc = True
 
     def __init__(self, topology: Topology) -> None:
         self._topology = topology
+        self.instant = self.transmit
         self.reach = topology.radio_range  # [m]
         self.tables: Sequence[Mapping[RobotId, Point]] = topology.neighbours
 
@@ -34,6 +34,10 @@ class IdealRadio:
         elif heard:
             ids, positions = [robot.id for robot in heard], [robot.position for robot in heard]
             self._topology.move_all(ids, positions)
+
+    def counts(self) -> AirCounts:
+        """Nothing worth counting."""
+        return AirCounts()
 
     def hearers(self, robot: RobotId) -> list[RobotId]:
         """Whoever is within range; ascending."""
@@ -51,6 +55,10 @@ class IdealRadio:
     def restore(self, robot: Robot) -> None:
         """The robot is heard again."""
         self._topology.move(robot.id, robot.position)
+
+    def send(self, transmission: Transmission, time: float, done: Received) -> None:
+        """Send it; it has arrived."""
+        done(self.transmit(transmission, time), time)
 
     def transmit(self, transmission: Transmission, time: float) -> Reception:
         """All neighbours hear a broadcast, the receiver what is addressed to it."""

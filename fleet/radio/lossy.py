@@ -6,12 +6,12 @@ off. Every frame carries its sender's position, so that whoever hears it knows t
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 
-from fleet.radio import Reception
-from fleet.radio.hearsay import AirSpec, HearsayRadio
+from fleet.agenda import Agenda
+from fleet.radio import Received, Reception
+from fleet.radio.hearsay import AirSpec, HearsayRadio, Scattered
 from protocols.messages import RobotId, Transmission
 
 
@@ -35,17 +35,19 @@ class RadioSpec(AirSpec):
         if not 0 <= self.retries <= 30:
             raise ValueError(f"radio retries is {self.retries}; expected 0 to 30")
 
+    def over(self, fleet: Scattered, seed: int, agenda: Agenda) -> LossyRadio:
+        """The radio of this kind among these robots; see the base class."""
+        return LossyRadio(self, fleet, seed, agenda)
+
 
 class LossyRadio(HearsayRadio[RadioSpec]):
     """Frames are lost one by one, each by chance of its own; the air has room for all."""
 
     _frames = 0
 
-    def send(
-        self, transmission: Transmission, time: float, done: Callable[[Reception], None]
-    ) -> None:
+    def send(self, transmission: Transmission, time: float, done: Received) -> None:
         """Send it now; what becomes of it is told at once, and when its sender knows."""
-        done(self.transmit(transmission, time))
+        done(self.transmit(transmission, time), time)
 
     def transmit(self, transmission: Transmission, time: float) -> Reception:
         """Send it, again if it must be; whoever hears it knows where the sender is."""

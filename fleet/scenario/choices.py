@@ -12,7 +12,7 @@ from fleet.motion import Motion
 from fleet.motion.motions import MOTIONS
 from fleet.power import ExtraPower, PowerModel
 from fleet.radio.catalogue import RADIOS
-from fleet.radio.lossy import RadioSpec
+from fleet.radio.hearsay import RadioParameters
 from fleet.robot import RobotSpec
 from fleet.scenario.binding import bind, build, field_types, keywords
 from fleet.scenario.errors import BadInput, bad, shown, unknown
@@ -192,15 +192,15 @@ def make_timing(choice: Choice) -> Rounds | Stream:
     return timing
 
 
-def radio_spec(choice: Choice) -> RadioSpec | None:
-    """What the lossy radio is like; None: the radio is ideal.
+def radio_spec(choice: Choice) -> RadioParameters | None:
+    """What the radio is like; None: it is ideal.
 
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
     if choice.name not in RADIOS:
         raise bad("radio", unknown("radio", choice.name, RADIOS))
-    spec: RadioSpec | None = build(
+    spec: RadioParameters | None = build(
         RADIOS[choice.name].function, choice.parameters, "radio", _functions(RADIOS)
     )
     return spec

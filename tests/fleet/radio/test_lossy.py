@@ -10,9 +10,11 @@ from hand_drawn import random_connected, random_points
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from fleet.agenda import Agenda
 from fleet.power import Battery
 from fleet.radio import BrokenProtocol, kernels, propagation
-from fleet.radio.lossy import LossyRadio, RadioSpec
+from fleet.radio.hearsay import Scattered
+from fleet.radio.lossy import RadioSpec
 from fleet.radio.shadowing import shadow
 from fleet.radio.walls import crossings, walls
 from fleet.robot import Robot
@@ -23,7 +25,7 @@ from worlds.shapes import Polygon, square
 
 
 def radio(points, *, radio_range=2.5, graph="gabriel", seed=1, **spec):
-    return LossyRadio(points, radio_range, graph, RadioSpec(**spec), seed, Arena())
+    return RadioSpec(**spec).over(Scattered(points, radio_range, graph, Arena()), seed, Agenda())
 
 
 def robot_at(id, place):
