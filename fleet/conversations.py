@@ -27,7 +27,6 @@ from protocols.messages import (
 HOPS_PER_ROBOT = 10  # after which a packet is said to go round in circles
 WORDS_PER_ROBOT = 1000  # after which a protocol is said to talk for ever
 RESTARTS = 3  # searches begun anew from where the packet stands, before it is given up
-LISTENING = 2.0  # how long an auctioneer waits for bids once it has called [s]
 
 
 @dataclass(slots=True, eq=False)
@@ -37,6 +36,7 @@ class Dialogue:
     task: Task
     here: RobotId  # who has the packet: the collecting robot at first
     words: Conversation
+    said: int = 0
     hops: int = 0
     restarts: int = 0
     called: float = inf  # when its auction was first called [s]
@@ -62,6 +62,7 @@ class Conversations:
     tally: Tally
     audience: Audience
     energy: ExtraPower  # what frames cost
+    listening: float  # how long an auctioneer waits for bids once it has called [s]
     concluded: Concluded
     broken: Broken
     under_way: int = 0
@@ -95,10 +96,7 @@ class Conversations:
                 kinds[transmission.kind] += 1
                 self._number += 1
                 if self._number > most:
-                    raise BrokenProtocol(
-                        f"the conversation about event {task.event.id} does not end; last said:"
-                        f" {transmission}"
-                    )
+                    raise _endless(task, transmission)
                 if listened:
                     said.append(transmission)
                     by_whom.append(heard)
@@ -129,6 +127,9 @@ class Conversations:
                 self._break(talk, f"robot {transmission.sender} fell silent")
                 return
             heard = ()  # it would have said it, were it still there
+        talk.said += 1
+        if talk.said > WORDS_PER_ROBOT * len(robots):
+            raise _endless(talk.task, transmission)
         self.radio.send(transmission, now, partial(self._sent, talk, transmission))
 
     def _sent(
@@ -167,7 +168,7 @@ class Conversations:
             self.tally.unheard += 1
         if transmission.kind == "call":
             talk.called = min(talk.called, now)
-        elif transmission.kind == "bid" and now - talk.called > LISTENING:
+        elif transmission.kind == "bid" and now - talk.called > self.listening:
             return ()
         elif transmission.kind.startswith("route"):
             talk.hops += 1
@@ -198,3 +199,9 @@ class Conversations:
         self.under_way -= 1
         self.tally.broken += 1
         self.broken(talk.task, why)
+
+
+def _endless(task: Task, last: Transmission) -> BrokenProtocol:
+    return BrokenProtocol(
+        f"the conversation about event {task.event.id} does not end; last said: {last}"
+    )

@@ -27,12 +27,14 @@ class Rounds:
 
     offers: int = 5
     service: float = 0.0  # how long a robot works on an event [s]
+    listening: float = 2.0  # how long bids count once an auction was called [s]
 
     def __post_init__(self) -> None:
         if self.offers < 1:
             raise ValueError(f"time offers is {self.offers}; expected 1 or more")
-        if not 0.0 <= self.service < inf:
-            raise ValueError(f"time service is {self.service}; expected 0 or more")
+        for name in ("service", "listening"):
+            if not 0.0 <= getattr(self, name) < inf:
+                raise ValueError(f"time {name} is {getattr(self, name)}; expected 0 or more")
 
     @property
     def rate(self) -> float:
@@ -64,6 +66,7 @@ class Stream:
     rate: float = 0.2  # events a second, on average
     duration: float = 600.0  # of the run [s]
     service: float = 0.0  # how long a robot works on an event [s]
+    listening: float = 2.0  # how long bids count once an auction was called [s]
     deadline: float = inf  # [s]
     backoff: float = 2.0  # [s]
     backoff_most: float = 60.0  # [s]
@@ -74,7 +77,7 @@ class Stream:
         for name in ("rate", "duration", "deadline", "backoff", "backoff_most"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"time {name} is {getattr(self, name)}; expected more than 0")
-        for name in ("service", "patience"):
+        for name in ("service", "listening", "patience"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise ValueError(f"time {name} is {getattr(self, name)}; expected 0 or more")
         if not self.rate <= 1e6:
@@ -106,6 +109,10 @@ class Mode(Protocol):
     @property
     def service(self) -> float:
         """How long a robot works on an event that does not say so itself [s]."""
+
+    @property
+    def listening(self) -> float:
+        """How long bids count once an auction was called, where transmissions take time [s]."""
 
     @property
     def deadline(self) -> float:
@@ -147,7 +154,7 @@ class OneAtATime:
     duration = deadline = longest_wait = inf
 
     def __init__(self, options: Rounds, limit: int | None, patience: int) -> None:
-        self.service = options.service
+        self.service, self.listening = options.service, options.listening
         self._limit = limit
         self._patience = patience
         self._in_hand: Task | None = None
@@ -196,7 +203,7 @@ class ByTheClock:
 
     def __init__(self, options: Stream, limit: int | None) -> None:
         self.duration = options.duration
-        self.service = options.service
+        self.service, self.listening = options.service, options.listening
         self.deadline = options.deadline
         self.longest_wait = options.backoff_most
         self._options = options

@@ -67,7 +67,7 @@ class Simulation:
         else:
             self._talks = Conversations(
                 protocol, self._presence.view, fleet.robots, radio, self._agenda, self.tally,
-                audience, fleet.spec.extra, self._concluded, self._broken_off,
+                audience, fleet.spec.extra, mode.listening, self._concluded, self._broken_off,
             )  # fmt: skip
         self._unnoticed = 0  # events in a row
         self._appraisals: dict[Point, dict[int, Appraisal]] | None = {} if audience.weighs else None

@@ -63,6 +63,7 @@ class SensorSpec:
 class SensorField:
     """Sensors in their places, and the tree over which their reports travel."""
 
+    arena: Arena
     spec: SensorSpec
     positions: FloatArray  # (count, 2) [m]
     hops: NDArray[np.int64]  # (count,) to the handler, itself included; 0: no way there
@@ -71,14 +72,20 @@ class SensorField:
     def detect(self, site: Corner, rng: np.random.Generator) -> list[Report]:
         """The reports of an event at ``site`` [m] that reach the handler, by sensor.
 
-        Each sensor in reach draws whether it misses the event, and errs by itself.
+        Each sensor in reach draws whether it misses the event, and errs by itself; none reports
+        a place that is not on the floor.
         """
+        width, height = self.arena.width, self.arena.height
         away = np.hypot(*(self.positions - np.array(site)).T)
         near = np.flatnonzero(away <= self.spec.reach)
         sensed = near[rng.random(len(near)) >= self.spec.miss]
         errors = rng.normal(0.0, 1.0, (len(near), 2))[: len(sensed)] * self.spec.error
         return [
-            Report(int(sensor), (site[0] + float(dx), site[1] + float(dy)), int(self.hops[sensor]))
+            Report(
+                int(sensor),
+                (min(max(site[0] + dx, 0.0), width), min(max(site[1] + dy, 0.0), height)),
+                int(self.hops[sensor]),
+            )
             for sensor, (dx, dy) in zip(sensed.tolist(), errors.tolist(), strict=True)
             if self.hops[sensor] > 0
         ]
@@ -113,4 +120,6 @@ def deploy(arena: Arena, spec: SensorSpec, rng: np.random.Generator) -> SensorFi
             f"sensors radio_range is {spec.radio_range} m; only {(hops > 0).sum()} of"
             f" {spec.count} sensors reach the handler; expected a longer range or more sensors"
         )
-    return SensorField(spec, positions, hops, np.where(before < 0, -1, before).astype(np.int64))
+    return SensorField(
+        arena, spec, positions, hops, np.where(before < 0, -1, before).astype(np.int64)
+    )

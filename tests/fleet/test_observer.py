@@ -236,3 +236,21 @@ def test_nothing_is_kept_of_what_robots_believe_if_nobody_asks():
             self.fleet = fleet
 
     fleet.run(fleet.Scenario.of(motion="straight", rounds=2), [Peeks()])
+
+
+@pytest.mark.parametrize("radio", ["ideal", "lossy"])
+def test_asking_for_links_on_the_way_changes_nothing(radio):
+    class Looking(Observer):
+        link_interval = 0.03
+        sample_interval = 0.05
+
+        def relinked(self, time):
+            """Look."""
+
+    scenario = fleet.Scenario.of(
+        motion="straight", seed=5, radio=radio,
+        time={"name": "stream", "rate": 4.0, "duration": 20.0},
+    )  # fmt: skip
+    alone, watched = fleet.run(scenario).as_dict(), fleet.run(scenario, [Looking()]).as_dict()
+    del alone["wall_time"], watched["wall_time"]
+    assert alone == watched
