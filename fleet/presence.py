@@ -49,10 +49,10 @@ class Presence:
         self._tally = tally
         places = np.array([robot.position for robot in fleet.robots], float).reshape(-1, 2)
         self._x, self._y = places[:, 0].copy(), places[:, 1].copy()
-        self._slice = audience.link_interval or inf
-        if radio.takes_time:
-            self._slice = min(self._slice, REFRESH)
-        self._looked = 0.0  # since when nobody has moved unseen [s]
+        self._interval = REFRESH if radio.takes_time else inf  # [s]
+        self._refreshed = 0.0  # since when nobody has moved unheard of [s]
+        self._link_interval = audience.link_interval or inf  # [s]
+        self._shown = 0.0  # when observers were last told [s]
         self._true_links = audience.present and radio.takes_time
         self._blackouts: list[Blackout] = []
         self._idle = fleet.spec.extra.idle  # [W]
@@ -63,44 +63,59 @@ class Presence:
         """How far to drive before links must be looked at again, at most to ``due`` [s]."""
         if not self._motion.moving:
             return due
-        return min(due, max(now, self._looked + self._slice))
+        look = min(self._refreshed + self._interval, self._shown + self._link_interval)
+        return min(due, max(now, look))
 
     def follow(self, now: float, arrived: Sequence[RobotId] = ()) -> None:
-        """Robots have driven: tell the radio, and observers, where they are."""
-        robots = self._fleet.robots
-        moved = [*self._motion.moving, *(robots[id] for id in arrived)]
+        """Robots have driven: tell the radio, and observers, where they are.
+
+        What observers ask to see on the way changes nothing: a radio that takes time, whose
+        robots only know what they have heard, is told in intervals of its own.
+        """
+        due = bool(arrived) or now >= self._refreshed + self._interval
+        moved = [*self._motion.moving, *(self._fleet.robots[id] for id in arrived)]
+        if due or not self._radio.takes_time:
+            self._update(moved, now)
+        if due:
+            self.stand(now, arrived)
+        if due or not self._radio.takes_time:
+            self._radio.refresh(moved, now)
+        if self._audience.present and moved:
+            self._show(moved, now)
+
+    def _update(self, moved: Iterable[Robot], now: float) -> None:
+        """Keep where robots are."""
         for robot in moved:
             self._x[robot.id], self._y[robot.id] = robot.position
         for robot in moved if self._seen else ():
             self._seen[robot.id].position = robot.position
         if self._blackouts:
             self._listen_anew(now)
-        for id in arrived:
-            self._paid[id] = now
-        self.stand(now)
-        self._radio.refresh(moved, now)
-        self._looked = now
-        if self._audience.present and moved:
-            self._show(moved, now)
+        self._refreshed = now
 
     def freshen(self, now: float) -> None:
-        """Before anybody talks: links that are too old are brought up to date."""
+        """Before anybody talks: links that are too old are brought up to date.
+
+        Over a radio that takes no time neighbours always know where they are.
+        """
         self.stand(now)
-        if now - self._looked >= REFRESH and self._motion.moving:
+        late = not self._radio.takes_time or now >= self._refreshed + self._interval
+        if late and self._motion.moving:
             self.follow(now)
 
-    def stand(self, now: float) -> None:
+    def stand(self, now: float, arrived: Sequence[RobotId] = ()) -> None:
         """Robots pay for their radios up to now, and idle power if they stand; those that stand
         and cannot are gone.
 
-        Under way it is motion that pays the rest. Ask for this before somebody sets off.
+        Under way it is motion that pays the rest, for those who have just arrived too. Ask for
+        this before somebody sets off.
         """
         moving, accounts = self._motion.moving, self._tally.accounts
         if not moving:
-            self._looked = now
+            self._refreshed = self._shown = now
         if not self._idle and not self._listening:
             return
-        under_way = {robot.id for robot in moving}
+        under_way = {*arrived, *(robot.id for robot in moving)}
         for robot in self._fleet.robots:
             time = now - self._paid[robot.id]
             if not robot.alive or time <= 0.0:
@@ -190,6 +205,7 @@ class Presence:
             self._audience.planned(robot, way, now)
 
     def _show(self, moved: Iterable[Robot], now: float) -> None:
+        self._shown = now
         if self._true_links:
             for robot in moved:
                 if robot.alive:
