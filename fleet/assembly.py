@@ -188,7 +188,7 @@ def make_radio(
     try:
         return spec.over(fleet, seed, agenda)
     except ValueError as error:
-        raise bad("graph", str(error)) from error
+        raise bad("radio", str(error)) from error
 
 
 def streams(seed: int) -> dict[str, np.random.Generator]:

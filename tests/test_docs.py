@@ -16,6 +16,7 @@ from fleet.motion.options import DriveOptions
 from fleet.power import ExtraPower, PowerModel
 from fleet.radio.csma import CsmaSpec
 from fleet.radio.lossy import RadioSpec
+from fleet.radio.trace import TraceSpec
 from fleet.results import Summary
 from fleet.robot import RobotSpec
 from fleet.scenario.model import Scenario
@@ -69,6 +70,7 @@ DESCRIBED = [
     ("`stream`: ", of_class(Stream)),
     ("`lossy`: ", of_class(RadioSpec)),
     ("`csma`: ", of_class(CsmaSpec)),
+    ("`trace` among the radios", of_class(TraceSpec)),
     ("## Faults", of_class(Faults)),
     ("A planned breakdown:", of_class(PlannedBreakdown)),
     ("A blackout:", of_class(Blackout)),

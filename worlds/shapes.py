@@ -15,6 +15,9 @@ PlaceTable: TypeAlias = Annotated[FloatArray, ("x", "y")]
 EventTable: TypeAlias = Annotated[FloatArray, ("time", "x", "y", "service", "deadline")]
 """Events (n, 3 to 5) [s, m, m, s, s], the same; NaN: the file does not say."""
 
+LinkTable: TypeAlias = Annotated[FloatArray, ("from", "to", "ratio", "time")]
+"""Links (n, 3 or 4) [robot, robot, 1, s], the same: shares of frames that get through."""
+
 
 class Shape(Protocol):
     """A closed region of the floor."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.radio.propagation import PHASE, Air, arrives, chance, farthest, reach
+from fleet.radio.propagation import PHASE, Air, arrives, chance, farthest, hears, reach
 from fleet.radio.tables import Heard, note, tell
 from protocols.compiled import kernel
 from protocols.topology.relinking import gather
@@ -107,7 +107,7 @@ def hearers(air: Air, places: Places, robot: int, on_air: NDArray[np.bool_]) -> 
     heard = 0
     for k in range(_around(places, robot, farthest(air))):
         w = p.near[k]
-        if on_air[w] and math.hypot(p.x[w] - x, p.y[w] - y) <= reach(air, x, y, p.x[w], p.y[w]):
+        if on_air[w] and hears(air, robot, w, x, y, p.x[w], p.y[w]):
             p.near[heard] = w
             heard += 1
     return heard

@@ -89,7 +89,7 @@ STANDARDS = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class CsmaSpec(AirSpec):
     """Which standard robots take turns by, and when frames drown: see the base class, too.
 

@@ -19,9 +19,45 @@ if TYPE_CHECKING:
     from fleet.radio.propagation import Air
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AirSpec:
-    """What the air does to frames, and how often robots beacon.
+@dataclass(frozen=True, kw_only=True)
+class BeaconSpec:
+    """How often robots beacon, and how long what was heard is believed.
+
+    Raises:
+        ValueError: a value is out of its range.
+    """
+
+    beacon_interval: float = 1.0  # [s]
+    beacon_jitter: float = 0.5  # share of the interval over which beacons are spread
+    validity: float = 4.5  # how long a neighbour is believed to be where it said [s]
+
+    def __post_init__(self) -> None:
+        for name in ("beacon_interval", "validity"):
+            if not 0.0 < getattr(self, name) < inf:
+                raise ValueError(f"radio {name} is {getattr(self, name)}; expected more than 0")
+        if not 0.0 <= self.beacon_jitter <= 1.0:
+            raise ValueError(f"radio beacon_jitter is {self.beacon_jitter}; expected 0 to 1")
+        if self.validity < self.beacon_interval:
+            raise ValueError(
+                f"radio validity is {self.validity} s; expected the beacon interval,"
+                f" {self.beacon_interval} s, or more"
+            )
+
+    @property
+    def a_disc(self) -> bool:
+        """Whether robots hear one another within a radius, whatever is between them."""
+        return False
+
+    def air(self, fleet: Scattered, seed: int) -> Air:
+        """The physical layer between these robots; by default nothing is lost."""
+        from fleet.radio import kernels
+
+        return kernels.air(AirSpec(), fleet, seed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AirSpec(BeaconSpec):
+    """What the air does to frames.
 
     A frame is lost with probability ``loss`` wherever, and besides with ``loss_at_range`` times
     (distance/range) to the power of ``falloff``. Shadowing and walls make the range of each
@@ -39,33 +75,32 @@ class AirSpec:
     shadow_distance: float = 5.0  # over which shadowing's correlation falls to 1/e [m]
     path_loss: float = 3.0  # η
     wall_loss: float = 0.0  # [dB]
-    beacon_interval: float = 1.0  # [s]
-    beacon_jitter: float = 0.5  # share of the interval over which beacons are spread
-    validity: float = 4.5  # how long a neighbour is believed to be where it said [s]
 
     def __post_init__(self) -> None:
+        BeaconSpec.__post_init__(self)
         for name in ("shadowing", "wall_loss"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise ValueError(f"radio {name} is {getattr(self, name)}; expected 0 or more")
-        for name in ("falloff", "path_loss", "shadow_distance", "beacon_interval", "validity"):
+        for name in ("falloff", "path_loss", "shadow_distance"):
             if not 0.0 < getattr(self, name) < inf:
                 raise ValueError(f"radio {name} is {getattr(self, name)}; expected more than 0")
-        for name in ("loss", "loss_at_range", "beacon_jitter"):
+        for name in ("loss", "loss_at_range"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise ValueError(f"radio {name} is {getattr(self, name)}; expected 0 to 1")
-        if self.validity < self.beacon_interval:
-            raise ValueError(
-                f"radio validity is {self.validity} s; expected the beacon interval,"
-                f" {self.beacon_interval} s, or more"
-            )
 
     @property
     def a_disc(self) -> bool:
         """Whether robots hear one another within a radius, whatever is between them."""
         return self.shadowing == 0.0 and self.wall_loss == 0.0
 
+    def air(self, fleet: Scattered, seed: int) -> Air:
+        """The physical layer between these robots."""
+        from fleet.radio import kernels
 
-Spec = TypeVar("Spec", bound=AirSpec)
+        return kernels.air(self, fleet, seed)
+
+
+Spec = TypeVar("Spec", bound=BeaconSpec)
 
 
 class Scattered(NamedTuple):
@@ -103,7 +138,7 @@ class HearsayRadio(Generic[Spec]):
         self.agenda = agenda
         self._kernels = kernels
         self.reach, self.disc = radio_range, spec.a_disc
-        self.air: Air = kernels.air(spec, radio_range, seed, fleet.arena)
+        self.air = spec.air(fleet, seed)
         n = len(robots)
         self._cells = Cells(robots, 0.5 * radio_range)
         for robot, position in enumerate(robots):

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
+from typing import TypeVar
 
 from fleet.agenda import Agenda
 from fleet.radio import Received, Reception
-from fleet.radio.hearsay import AirSpec, HearsayRadio, Scattered
+from fleet.radio.hearsay import AirSpec, BeaconSpec, HearsayRadio, Scattered
 from protocols.messages import RobotId, Transmission
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RadioSpec(AirSpec):
-    """What the lossy radio does to frames, and how often robots beacon: see the base class, too.
+@dataclass(frozen=True, kw_only=True)
+class Repetition(BeaconSpec):
+    """How long frames take, and how often they are sent again.
 
     Raises:
         ValueError: a value is out of its range.
@@ -28,19 +29,35 @@ class RadioSpec(AirSpec):
     retries: int = 3  # further attempts for a frame that was not acknowledged
 
     def __post_init__(self) -> None:
-        AirSpec.__post_init__(self)
+        BeaconSpec.__post_init__(self)
         for name in ("latency", "timeout"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise ValueError(f"radio {name} is {getattr(self, name)}; expected 0 or more")
         if not 0 <= self.retries <= 30:
             raise ValueError(f"radio retries is {self.retries}; expected 0 to 30")
 
-    def over(self, fleet: Scattered, seed: int, agenda: Agenda) -> LossyRadio:
+
+@dataclass(frozen=True, kw_only=True)
+class RadioSpec(AirSpec, Repetition):
+    """What the lossy radio does to frames: see its bases.
+
+    Raises:
+        ValueError: a value is out of its range.
+    """
+
+    def __post_init__(self) -> None:
+        AirSpec.__post_init__(self)
+        Repetition.__post_init__(self)
+
+    def over(self, fleet: Scattered, seed: int, agenda: Agenda) -> LossyRadio[RadioSpec]:
         """The radio of this kind among these robots; see the base class."""
         return LossyRadio(self, fleet, seed, agenda)
 
 
-class LossyRadio(HearsayRadio[RadioSpec]):
+Repeating = TypeVar("Repeating", bound=Repetition)
+
+
+class LossyRadio(HearsayRadio[Repeating]):
     """Frames are lost one by one, each by chance of its own; the air has room for all."""
 
     _frames = 0

@@ -12,12 +12,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fleet.radio.shadowing import CUT, Shadows, shadow
 from fleet.radio.walls import Walls, crossings
 from protocols.compiled import kernel
 
 FRAME, PHASE, BACKOFF = 1, 3, 4  # what chance is asked for
+EVERYWHERE = 1e9  # [m]
 
 
 class Air(NamedTuple):
@@ -31,6 +33,7 @@ class Air(NamedTuple):
     path_loss: float  # exponent η of the path loss, which turns decibels into range
     shadows: Shadows
     walls: Walls
+    ratios: NDArray[np.float32]  # (n, n) of frames delivered, from and to; or (0, 0): by distance
 
 
 @kernel
@@ -66,14 +69,26 @@ def reach(air, ax, ay, bx, by):
 
 
 @kernel
+def hears(air, sender, receiver, ax, ay, bx, by):
+    """Whether a robot at b hears the sender at a [m], if nothing is lost by chance."""
+    if len(air.ratios) > 0:
+        return air.ratios[sender, receiver] > 0.0
+    return math.hypot(bx - ax, by - ay) <= reach(air, ax, ay, bx, by)
+
+
+@kernel
 def farthest(air):
     """The longest that any link can be [m]."""
+    if len(air.ratios) > 0:
+        return EVERYWHERE
     return air.radio_range * 10.0 ** (CUT * air.shadows.deviation / (10.0 * air.path_loss))
 
 
 @kernel
 def arrives(air, frame, sender, receiver, ax, ay, bx, by):
     """Whether a frame from a sender at a gets to a receiver at b [m]."""
+    if len(air.ratios) > 0:
+        return chance(air.seed, FRAME, frame, sender, receiver) < air.ratios[sender, receiver]
     limit, distance = reach(air, ax, ay, bx, by), math.hypot(bx - ax, by - ay)
     if distance > limit:
         return False

@@ -22,7 +22,7 @@ from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.catalogue import METRICS
 from protocols.metrics import Metric
 from worlds.occupancy import OccupancyGrid
-from worlds.shapes import EventTable, PlaceTable
+from worlds.shapes import EventTable, LinkTable, PlaceTable
 
 T = TypeVar("T")
 MOST = 1e12  # of any number: nothing of a fleet is larger, and its square is still a number
@@ -104,7 +104,7 @@ def convert(kind: Any, value: Any, key: str) -> Any:
 @cache
 def _columns(kind: Any) -> tuple[str, ...] | None:
     """The columns of a table of numbers, or of one that may be left out; None: it is none."""
-    for table in (PlaceTable, EventTable):
+    for table in (PlaceTable, EventTable, LinkTable):
         if kind == table or kind == table | None:
             columns: tuple[str, ...] = get_args(table)[1]
             return columns

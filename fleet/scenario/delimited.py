@@ -32,7 +32,7 @@ ALIASES = {
     "service_time": "service",
 }  # fmt: skip
 UNIT = re.compile(r"\s*[\[(].*?[\])]\s*$|_(m|s|sec)$")
-NEEDED = ("x", "y")
+NEEDED = ("x", "y", "from", "to", "ratio")  # where a table has such columns
 EPOCH = 1e8  # [s] from which on times count from 1970: a run is never that long
 TICKS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (EPOCH, 1.0))  # from where on, [s]
 MOST = 1e12  # of any other number
@@ -63,7 +63,7 @@ def numbers(value: Any, columns: tuple[str, ...], key: str) -> FloatArray:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
         array = np.empty(0)
-    least = 1 + columns.index("y")
+    least = 1 + max(map(columns.index, _needed(columns)))
     if array.ndim != 2 or not least <= array.shape[1] <= len(columns) or not array.size:
         array = np.full((1, 1), nan)
     if not (np.abs(array) <= MOST).all():
@@ -71,6 +71,11 @@ def numbers(value: Any, columns: tuple[str, ...], key: str) -> FloatArray:
             key, f"is {shown(value)}; expected the path of a table, or rows of {_listed(columns)}"
         )
     return array
+
+
+def _needed(columns: Sequence[str]) -> set[str]:
+    """Those that a table of these columns cannot do without."""
+    return {name for name in columns if name in NEEDED}
 
 
 def _lines(path: Path, key: str) -> list[_Line]:
@@ -142,7 +147,7 @@ def _by_name(head: Sequence[str], columns: tuple[str, ...], place: str, key: str
     """Where each of the ``columns`` stands that are there; others are passed over."""
     names = [_plain(name) for name in head]
     said = f"{place}: the columns are {shown(','.join(head))}"
-    if missing := [name for name in NEEDED if name not in names]:
+    if missing := sorted(_needed(columns) - set(names)):
         raise bad(key, f"{said}; expected {_listed(columns)}: {missing[0]} is missing")
     for name in columns:
         if names.count(name) > 1:
@@ -159,13 +164,13 @@ def _commented_names(
         return None
     text = before[-1].text.lstrip().lstrip("#%/ ")
     head = _cells(_Line(before[-1].number, text), mark, path, key)
-    if len(head) < len(NEEDED) or not {"x", "y"} <= {_plain(name) for name in head}:
+    if not _needed(columns) <= {_plain(name) for name in head}:
         return None
     return _by_name(head, columns, f"{path}:{before[-1].number}", key)
 
 
 def _by_order(count: int, columns: tuple[str, ...], place: str, key: str) -> dict[str, int]:
-    least = 1 + columns.index("y")
+    least = 1 + max(map(columns.index, _needed(columns)))
     if not least <= count <= len(columns):
         raise bad(
             key,

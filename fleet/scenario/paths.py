@@ -8,12 +8,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from fleet.radio.catalogue import RADIOS
 from worlds.catalogue import EVENTS, WORLDS
 from worlds.occupancy import OccupancyGrid
-from worlds.shapes import EventTable, PlaceTable
+from worlds.shapes import EventTable, LinkTable, PlaceTable
 
 OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
 """The keys that may hold ``file.py:name``."""
+FILES = (PlaceTable, PlaceTable | None, EventTable, LinkTable, OccupancyGrid)
+"""What is read from a file, if a text stands for it."""
 
 
 @cache
@@ -21,11 +24,12 @@ def path_keys() -> frozenset[str]:
     """The dotted scenario keys whose text is the path of a file, whatever it is called."""
     return frozenset(
         f"{choice}.{parameter.name}"
-        for choice, catalogue in (("world", WORLDS), ("events", EVENTS))
+        for choice, catalogue in (("world", WORLDS), ("events", EVENTS), ("radio", RADIOS))
         for entry in catalogue.values()
         for parameter in inspect.signature(entry.function, eval_str=True).parameters.values()
         if parameter.kind is parameter.KEYWORD_ONLY
-        and parameter.annotation in (PlaceTable, PlaceTable | None, EventTable, OccupancyGrid)
+        and parameter.annotation
+        in (PlaceTable, PlaceTable | None, EventTable, LinkTable, OccupancyGrid)
     )
 
 

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fleet.agenda import Agenda
 from fleet.power import Battery
-from fleet.radio import BrokenProtocol, kernels, propagation
+from fleet.radio import BrokenProtocol, propagation
 from fleet.radio.hearsay import Scattered
 from fleet.radio.lossy import RadioSpec
 from fleet.radio.shadowing import shadow
@@ -135,7 +135,7 @@ def test_loss_grows_with_distance():
 def test_shadowing_and_walls_change_how_far_a_link_reaches_the_same_both_ways():
     wall = Arena(10.0, 10.0, obstacles=(square(5.0, 5.0, 0.5),))
     plain, shadowed, walled, both = (
-        kernels.air(RadioSpec(shadowing=s, wall_loss=w), 2.5, 5, wall)
+        RadioSpec(shadowing=s, wall_loss=w).air(Scattered([], 2.5, "gabriel", wall), 5)
         for s, w in ((0.0, 0.0), (4.0, 0.0), (0.0, 6.0), (4.0, 6.0))
     )
     rng = np.random.default_rng(3)
