@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import dist, isnan
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from fleet.scenario.errors import BadInput, bad, shown
 from fleet.scenario.plugins import what, where_in
@@ -21,7 +21,6 @@ from protocols.messages import (
     Award,
     Conversation,
     Event,
-    Heard,
     Point,
     ProtocolFunction,
     RobotId,
@@ -29,6 +28,7 @@ from protocols.messages import (
     View,
 )
 
+T = TypeVar("T")
 PATIENCE = 10_000  # transmissions between two robots, after which a protocol never ends
 PER_METRE = 20.0  # [J/m]
 
@@ -61,18 +61,13 @@ def rehearse(protocol: ProtocolFunction, called: str) -> None:
             without an award, or hears bids that are no numbers.
     """
     try:
-        award = _play(protocol)
+        costs: list[Any] = [getattr(bid, "cost", bid) for bid in _play(protocol, called).bids]
     except BadInput:
         raise
     except ValueError as error:
         raise bad("protocol", f"{shown(called)} fails: {reason(error)}") from error
     except TypeError as error:
         raise bad("protocol", f"{shown(called)} fails: {what(error)}") from error
-    if not isinstance(award, Award):
-        raise bad(
-            "protocol", f"{shown(called)} returns {_kind(award)}; expected an Award at its end"
-        )
-    costs: list[Any] = [getattr(bid, "cost", bid) for bid in award.bids]
     for cost in costs:
         if not isinstance(cost, Real) or isnan(cost):
             raise bad(
@@ -80,20 +75,42 @@ def rehearse(protocol: ProtocolFunction, called: str) -> None:
             )
 
 
-def _play(protocol: ProtocolFunction) -> object:
-    words: Any = protocol(VIEW, EVENT, 0)
-    heard: tuple[RobotId, ...] | None = None
+def _play(protocol: ProtocolFunction, called: str) -> Award:
+    words = begun(protocol(VIEW, EVENT, 0), called)
+    heard: Any = None
     for _ in range(PATIENCE):
         try:
-            said = words.send(heard)
+            said = checked(words.send(heard), Transmission, "yields", called)
         except StopIteration as end:
-            return end.value
-        if not isinstance(said, Transmission):
-            raise TypeError(f"it yields {_kind(said)}; expected a Transmission")
+            return checked(end.value, Award, "returns", called)
         if said.sender not in (0, 1):
             raise ValueError(f"robot {shown(said.sender)} speaks; there are robots 0 and 1")
         heard = (1 - said.sender,)
     raise ValueError(f"it still talks after {PATIENCE} transmissions between two robots")
+
+
+def begun(words: object, called: str) -> Conversation:
+    """The conversation that a protocol has begun.
+
+    Raises:
+        BadInput: it is none.
+    """
+    if isinstance(words, Generator):
+        return words
+    said = f"{shown(called)} returns {_kind(words)}; expected a generator of transmissions"
+    raise bad("protocol", said)
+
+
+def checked(value: object, kind: type[T], verb: str, called: str) -> T:
+    """What a protocol yields, or returns at its end.
+
+    Raises:
+        BadInput: it is something else.
+    """
+    if isinstance(value, kind):
+        return value
+    expected = f"a {kind.__name__}" if kind is Transmission else f"an {kind.__name__} at its end"
+    raise bad("protocol", f"{shown(called)} {verb} {_kind(value)}; expected {expected}")
 
 
 def _kind(value: object) -> str:
@@ -113,35 +130,25 @@ def guarded(protocol: ProtocolFunction, called: str, parts: Mapping[str, Any]) -
     watch = Watch(folders[0])
 
     def guard(view: View, event: Event, source: RobotId) -> Conversation:
-        heard: Heard | None = None
-        words: Any = None
-        while True:
-            try:
+        heard: Any = None
+        words: Conversation | None = None
+        try:
+            while True:
                 with watch:
-                    words = words or _begun(protocol(view, event, source), called)
+                    words = words or begun(protocol(view, event, source), called)
                     said = words.send(heard)
-            except StopIteration as end:
-                award: Award = end.value
-                return award
-            except BadInput:
+                heard = yield checked(said, Transmission, "yields", called)
+        except StopIteration as end:
+            return checked(end.value, Award, "returns", called)
+        except BadInput:
+            raise
+        except (Exception, SystemExit, Stuck) as error:
+            where = next(filter(None, (where_in(error, folder) for folder in folders)), "")
+            if not where:  # none of the user's lines had a part in it
                 raise
-            except (Exception, SystemExit, Stuck) as error:
-                where = next(filter(None, (where_in(error, folder) for folder in folders)), "")
-                if not where:  # none of the user's lines had a part in it
-                    raise
-                raise bad("protocol", f"{shown(called)} fails{where}: {what(error)}") from error
-            heard = yield said
+            raise bad("protocol", f"{shown(called)} fails{where}: {what(error)}") from error
 
     return guard
-
-
-def _begun(words: object, called: str) -> object:
-    if isinstance(words, Generator):
-        return words
-    raise bad(
-        "protocol",
-        f"{shown(called)} returns {_kind(words)}; expected a generator of transmissions",
-    )
 
 
 def _texts(value: Any) -> Iterator[str]:

@@ -59,7 +59,7 @@ def mine(tmp_path_factory):
         ("one", "takes 1 positional argument but 3 were given"),
         ("NotCalled", "not callable"),
         ("returns", "returns int 17; expected a generator of transmissions"),
-        ("yields", "it yields int 5; expected a Transmission"),
+        ("yields", "yields int 5; expected a Transmission"),
         ("ends", "returns nothing; expected an Award at its end"),
         ("breaks", "fails in line 21 of mine.py: ZeroDivisionError: division by zero"),
         ("talks", "it still talks after 10000 transmissions between two robots"),
