@@ -6,8 +6,11 @@ Everything is drawn from one ``random.Random``, so that an input is found again 
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from inspect import signature
 from pathlib import Path
+from typing import Any
 
 from fleet.modes import TIMINGS
 from fleet.motion.motions import MOTIONS
@@ -35,14 +38,17 @@ NUMBERS = (
 TEXTS = (
     *('""', '"x"', '"rfta2"', '"RFTA2"', '"distance"', '"a.py:b"', '"a.py"', '".py:"', '":"'),
     *(r'"\u0000"', r'"a\nb"', '"é😀"', f'"{10_000 * "y"}"', '"/dev/zero"', '"/dev/null"', '"/"'),
-    *('"."', '"../.."', '"nowhere.csv"', '"%s %d {0}"', r'"\u001b[31m"', '"None"', '"inf"', "'''"),
+    *('"."', '"../.."', '"nowhere.csv"', '"%s %d {0}"', r'"\u001b[31m"', '"None"', '"inf"'),
 )  # fmt: skip
 OTHERS = (
     *("true", "false", "[]", "[[]]", "[1, 2]", "[[1, 2]]", "[[1, 2], [3]]", "[nan]", "{}"),
     *("{x = 1}", '{name = ""}', "{name = 1}", '{name = "rfta2"}', "[{}]", '["a", 1, true]'),
-    *("1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", 200 * "[" + 200 * "]", 2000 * "["),
+    *("1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", 200 * "[" + 200 * "]"),
     *("[[0, 0], [0, 0], [0, 0]]", "[[1, 1], [4, 2], [2, 5]]", "[0.1, -0.1]", "[{time = 1}]"),
-    *("{a = {b = {c = {d = 1}}}}", "", "=", "# no", "[", '"', "1 2", "x y z", "\\", "\x00"),
+    "{a = {b = {c = {d = 1}}}}",
+)  # fmt: skip
+BROKEN = (
+    *("", "=", "# no", "[", '"', "1 2", "x y z", "\\", "\x00", 2000 * "[", 3 * "'", "=1", "1,5"),
 )  # fmt: skip
 NASTY = (*NUMBERS, *TEXTS, *OTHERS)
 
@@ -59,46 +65,70 @@ class Input:
     touched: list[str] = field(default_factory=list)
 
 
-def literal(rng: random.Random, key: str = "") -> str:
-    """A value as TOML has it, right or wrong."""
-    if rng.random() < 0.4:
-        number = rng.choice((1, 1, 10, 0.1)) * rng.random() ** 3 * 10
-        return repr(round(number, 3)) if rng.random() < 0.6 else str(int(number))
-    value = rng.choice(NASTY)
+def literal(rng: random.Random, key: str, default: Any = None) -> str:
+    """A value as TOML has it: near the default as a rule, or any other."""
+    if rng.random() < 0.6:
+        return near(rng, default)
+    value = rng.choice(NASTY if rng.random() < 0.95 else BROKEN)
     big = key in BIG and value[:1].isdigit() and value not in ("0", "1", "2", "3.5", "1e-9")
     return "7" if big else value
+
+
+def near(rng: random.Random, default: Any) -> str:
+    """A value of the kind of the default, as a rule one that is taken."""
+    if isinstance(default, bool):
+        return rng.choice(("true", "false"))
+    if isinstance(default, int):
+        return str(max(0, default + rng.randrange(-2, 3)))
+    if isinstance(default, float):
+        return repr(round(rng.choice((default or 1.0, 0.3)) * rng.uniform(0.2, 2.0), 4))
+    if isinstance(default, str):
+        return f'"{default}"'
+    return rng.choice(("1", "0.5", "2.0", '"distance"', "{}", "[]"))
 
 
 def settings(rng: random.Random) -> dict[str, str]:
     """A scenario as dotted keys and literals: names that exist, a few keys with any value."""
     given = {
-        choice: rng.choice(sorted(catalogue))
+        choice: rng.choice(sorted(set(catalogue) - {"trace", "map", "placed"}))
         for choice, catalogue in CATALOGUES.items()
         if rng.random() < 0.4
     }
     given["motion"] = rng.choice(("straight",) * 9 + ("path",))
     chosen = {f"{choice}.name": f'"{name}"' for choice, name in given.items()}
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        key = any_key(rng, given)
-        chosen[key] = literal(rng, key)
+        key, default = any_key(rng, given)
+        for other in [other for other in chosen if other.startswith(f"{key}.")]:
+            del chosen[other]
+        chosen[key] = literal(rng, key, default)
     return chosen
 
 
-def any_key(rng: random.Random, given: dict[str, str]) -> str:
-    """A dotted key of a scenario, of the tables that were chosen as a rule."""
+def any_key(rng: random.Random, given: dict[str, str]) -> tuple[str, Any]:
+    """A dotted key of a scenario with its default, of the tables that were chosen as a rule."""
     kind = rng.random()
     if kind < 0.4:
         choice = rng.choice(sorted(CATALOGUES))
         catalogue = CATALOGUES[choice]
         name = given.get(choice, getattr(Scenario(), choice).name)
-        keys = sorted(keywords(catalogue[name if kind < 0.35 else rng.choice(sorted(catalogue))]))
-        return f"{choice}.{rng.choice(keys)}" if keys else choice
+        function = catalogue[name if kind < 0.35 else rng.choice(sorted(catalogue))]
+        keys = sorted(keywords(function))
+        key = rng.choice(keys) if keys else ""
+        return (f"{choice}.{key}", default_of(function, key)) if key else (choice, name)
     if kind < 0.7:
         table = rng.choice(sorted(PLAIN_TABLES))
-        return f"{table}.{rng.choice(sorted(field_types(PLAIN_TABLES[table])))}"
+        key = rng.choice(sorted(field_types(PLAIN_TABLES[table])))
+        return f"{table}.{key}", default_of(PLAIN_TABLES[table], key)
     if kind < 0.95:
-        return rng.choice(sorted(Scenario.__dataclass_fields__))
-    return rng.choice(("protocol.search.stop", "protocol.search.radius", "x", "a.b.c.d", "robot.x"))
+        key = rng.choice(sorted(Scenario.__dataclass_fields__))
+        return key, default_of(Scenario, key)
+    odd = ("protocol.search.stop", "protocol.search.radius", "x", "a.b.c.d", "robot.x")
+    return rng.choice(odd), "edge"
+
+
+def default_of(function: Callable[..., Any], key: str) -> Any:
+    """The default of a parameter."""
+    return signature(function).parameters[key].default
 
 
 def as_file(rng: random.Random, chosen: dict[str, str]) -> str:
@@ -180,7 +210,12 @@ def options(rng: random.Random) -> Input:
     for _ in range(rng.randrange(4)):
         arguments.append(rng.choice(OPTIONS))
         if rng.random() < 0.7:
-            value = rng.choice(NASTY).strip("\"'").replace("\x00", "").replace(r"\u0000", "")
+            value = (
+                rng.choice((*NASTY, *BROKEN))
+                .strip("\"'")
+                .replace("\x00", "")
+                .replace(r"\u0000", "")
+            )
             arguments.append(value[:3000])
     if rng.random() < 0.3:
         arguments.append(rng.choice(("scenario.toml", "nowhere", "", ".", "/dev/null")))
@@ -190,26 +225,25 @@ def options(rng: random.Random) -> Input:
 def study(rng: random.Random) -> Input:
     """A study file, to be checked and not run."""
     chosen = settings(rng)
-    lines = [rng.choice(("", f"seeds = {literal(rng)}", "seeds = 2", "seeds = [1, 2, 1]"))]
-    for key in ("title", "tables", "report", "scenario", "axes", "paired", "cases"):
-        if rng.random() < 0.07:
-            lines.append(f"{key} = {literal(rng)}")
-    scenario_keys = {f"scenario.{k}": v for k, v in chosen.items() if rng.random() < 0.4}
-    axes = [key for key in chosen if f"scenario.{key}" not in scenario_keys]
-    text = "\n".join(lines) + "\n" + as_file(rng, scenario_keys)
+    seeds = rng.choice(("", "seeds = 2", "seeds = [1, 2]", f"seeds = {literal(rng, '', 3)}"))
+    wrong = rng.choice(("title", "tables", "report", "scenario", "axes", "paired", "cases"))
+    top = [f"{wrong} = {literal(rng, '')}"] if rng.random() < 0.3 else []
+    base = {f"scenario.{key}": value for key, value in chosen.items() if rng.random() < 0.6}
+    text = "\n".join([seeds, *top]) + "\n" + as_file(rng, base)
     where = rng.choice(("axes", "axes", "[paired]", "[cases]"))
     text += f"[{where}]\n"
-    for key in axes:
-        values = [literal(rng, key) for _ in range(rng.randrange(3))]
-        written = f"[{', '.join([chosen[key], *values])}]" if where != "[cases]" else chosen[key]
-        text += f"{rng.choice((key, repr(key)))} = {written}\n"
+    for key in [key for key in chosen if f"scenario.{key}" not in base] or ["search_radius"]:
+        value = chosen.get(key, "1.5")
+        others = [literal(rng, key, 1.0) for _ in range(rng.choice((0, 0, 1, 2)))]
+        text += rng.choice((key, repr(key)))
+        text += f" = {value}\n" if where == "[cases]" else f" = [{', '.join([value, *others])}]\n"
     if rng.random() < 0.2:
         part = rng.choice(("x", "series", "baseline", "measures", "y"))
-        text += f"[report]\n{part} = {literal(rng)}\n"
+        text += f"[report]\n{part} = {literal(rng, '', 'protocol')}\n"
     content = text.encode()
-    return Input(["check-study", "study.toml"], {
-        "study.toml": garbled(rng, content) if rng.random() < 0.4 else content
-    })  # fmt: skip
+    if rng.random() < 0.25:
+        content = garbled(rng, content)
+    return Input(["check-study", "study.toml"], {"study.toml": content})
 
 
 CELLS = (

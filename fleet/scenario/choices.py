@@ -98,7 +98,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     function = protocol_function(name)
     accepted = keywords(function)
     search = parameters.get("search", {})
-    if "search" in accepted and not isinstance(search, Mapping):
+    if not isinstance(search, Mapping):
         raise bad("protocol.search", f"is {shown(search)}; expected a table")
     if "radius" in search or "search_radius" in parameters:
         wrong = "search_radius" if "search_radius" in parameters else "search.radius"

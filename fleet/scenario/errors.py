@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from datetime import date, time
 from difflib import get_close_matches
 from typing import Any
 
@@ -33,7 +34,7 @@ def shown(value: Any, most: int = MOST_SHOWN) -> str:
     if isinstance(value, list | tuple | dict) and len(value) > most:  # half of it will do
         value = list(value)[:most]
     try:
-        text = repr(value)
+        text = str(value) if isinstance(value, date | time) else repr(value)
     except (RecursionError, ValueError):  # nested too deeply, or with numbers too long to write
         return f"a {type(value).__name__}"
     return shortened(text, most)

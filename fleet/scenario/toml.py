@@ -52,7 +52,7 @@ def read_toml(path: Path) -> Document:
     try:
         data = parse(text)
     except ValueError as error:
-        raise bad("", _not_toml(path, str(error))) from error
+        raise bad("", _not_toml(path, text, str(error))) from error
     return Document(path, data, key_lines(text))
 
 
@@ -153,10 +153,14 @@ def _open(line: str, depth: int, quote: str) -> tuple[int, str]:
     return depth, ""
 
 
-def _not_toml(path: Path, message: str) -> str:
+def _not_toml(path: Path, text: str, message: str) -> str:
     where = re.search(r"\(at line (\d+), column (\d+)\)", message)
     what = shortened((message[: where.start()] if where else message).strip(), 120)
-    place = shortened(str(path), 100) + (f":{where[1]}:{where[2]}" if where else "")
+    place = shortened(str(path), 100)
+    if where:
+        place += f":{where[1]}:{where[2]}"
+    elif long := re.search(r"\d{4000}", text):
+        place += f":{text.count(chr(10), 0, long.start()) + 1}"
     return f"{place}: not TOML: {what[:1].lower()}{what[1:]}"
 
 
