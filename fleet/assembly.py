@@ -22,6 +22,7 @@ from fleet.radio.hearsay import Scattered
 from fleet.radio.ideal import IdealRadio
 from fleet.results import Summary
 from fleet.robot import Robot
+from fleet.scenario.advice import advice
 from fleet.scenario.choices import (
     bind_events,
     bind_protocol,
@@ -69,7 +70,8 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     motion = make_motion(scenario.motion, scenario.robot, world.arena, audience.sample_interval)
     solid = MOTIONS[scenario.motion.name].solid
     ground = ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
-    for said in filter(None, (*world.notices, ground.notice())):
+    advised = advice(scenario, world.arena)
+    for said in filter(None, (*world.notices, ground.notice(), *advised)):
         audience.noticed(said)
     points = start(world, ground, scenario, random["placement"], audience.placement_tried)
     agenda = Agenda()

@@ -62,7 +62,7 @@ class Input:
 
     arguments: list[str]
     files: dict[str, bytes] = field(default_factory=dict)
-    touched: list[str] = field(default_factory=list)
+    touched: list[tuple[str, str]] = field(default_factory=list)  # and what they were set to
 
 
 def literal(rng: random.Random, key: str, default: Any = None) -> str:
@@ -177,7 +177,7 @@ def scenario(rng: random.Random) -> Input:
     by_option = {key for key in chosen if rng.random() < 0.3}
     text = as_file(rng, {key: value for key, value in chosen.items() if key not in by_option})
     content = text.encode()
-    touched = [key for key in chosen if not key.endswith(".name")]
+    touched = [item for item in chosen.items() if not item[0].endswith(".name")]
     if rng.random() < 0.3:
         content, touched = garbled(rng, content), []
     arguments = ["run", "scenario.toml"]
@@ -320,16 +320,35 @@ def floor_map(rng: random.Random) -> Input:
     return Input(arguments, {"floor.yaml": text, "floor.pgm": image})
 
 
-PROTOCOL_LINES = (
-    *("", "    pass", "    yield", "    yield 1", "    return 1", "    raise ValueError('x' * 999)"),
-    *("    1 / 0", "    yield Transmission('call', source, None)", "    yield Transmission('x', 0, 1)"),
-    *("    yield Transmission('bid', source, 5)", "    return Award(source, source)", "  x", "(" * 99),
-    *("    return Award(-1, source)", "    return Award(99, 99)", "    view[99]", "    exit()"),
-    *("    return Award('a', None)", "    view[0].x", "    raise SystemExit(3)", "import nowhere"),
-    *("    yield Transmission('call', 99, None)", "    yield from view", "    event.id = 3"),
-    *("    return Award(None, source, (1, 2))", "    from helper import x", "    while False: pass"),
-    *("    yield Transmission('call', 'a', None)", "    yield Transmission(1, source, source)"),
-)  # fmt: skip
+PROTOCOL_LINES = """\
+    pass
+    yield
+    yield 1
+    return 1
+    raise ValueError('x' * 999)
+    1 / 0
+    yield Transmission('call', source, None)
+    yield Transmission('x', 0, 1)
+    yield Transmission('bid', source, 5)
+    return Award(source, source)
+  x
+    return Award(-1, source)
+    return Award(99, 99)
+    view[99]
+    exit()
+    return Award('a', None)
+    view[0].x
+    raise SystemExit(3)
+import nowhere
+    yield Transmission('call', 99, None)
+    yield from view
+    event.id = 3
+    return Award(None, source, (1, 2))
+    from helper import x
+    while False: pass
+    yield Transmission('call', 'a', None)
+    yield Transmission(1, source, source)
+""".splitlines()
 
 
 def own_protocol(rng: random.Random) -> Input:

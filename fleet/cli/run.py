@@ -89,6 +89,7 @@ def look(
 ) -> None:
     """Everything but the run itself."""
     from fleet.assembly import prepare
+    from fleet.cli.notices import Notices
     from fleet.scenario.loading import load_scenario
     from fleet.scenario.resolving import as_toml
 
@@ -96,7 +97,7 @@ def look(
     if dump:
         click.echo(as_toml(loaded), nl=False)
         return
-    ready = prepare(loaded).fleet
+    ready = prepare(loaded, [Notices()]).fleet
     click.echo(
         f"Ready: {loaded.protocol.name} on {loaded.world.name}, {loaded.motion.name} motion,"
         f" {len(ready.robots)} robots, seed {loaded.seed}. Nothing was run."

@@ -60,6 +60,14 @@ class DriveOptions:
             raise ValueError(f"motion per_launch is {self.per_launch} J; expected 0 or more")
         if self.replans < 0:
             raise ValueError(f"motion replans is {self.replans}; expected 0 or more")
+        self._check_correction()
+
+    def _check_correction(self) -> None:
+        if self.belief == "corrected" and self.per_metre is None and not self.per_launch:
+            raise ValueError(
+                "motion belief is 'corrected'; expected per_launch or per_metre as well, without"
+                " which it is 'path'"
+            )
 
     def ladder(self, spec: RobotSpec) -> tuple[float, ...]:
         """Clearances [m] to try in turn for a robot.

@@ -26,6 +26,7 @@ from worlds.shapes import Corner
 REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 KEYS = (*REQUIRED, "mode")
 MODES = ("trinary", "scale", "raw")
+MOST_YAML = 100_000  # bytes; a map's header has some two hundred
 NOTHING = {"", "~", "null"}
 SAVED_UNKNOWN = 205  # the grey that map_saver writes for unknown cells
 WORTH_SAYING = 0.001  # share of the cells from which on it is
@@ -71,14 +72,18 @@ def read_yaml(path: Path, key: str) -> dict[str, Any]:
     """
     import yaml
 
-    text = read_text(path.expanduser(), key)
+    text = read_text(path.expanduser(), key, most=MOST_YAML)
     try:
         found = yaml.load(text, Loader=yaml.BaseLoader)  # noqa: S506  # makes text alone
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise bad(key, f"{path}{_line(error)}: {_problem(error)}; expected YAML") from error
     if not isinstance(found, dict):
         raise bad(key, f"{path}: is no table of keys; expected {', '.join(REQUIRED)}")
-    keys = {str(name).lower(): value for name, value in found.items() if str(value) not in NOTHING}
+    keys = {
+        str(name).lower(): value
+        for name, value in found.items()
+        if not (isinstance(value, str) and value in NOTHING)  # written out, aliases can be endless
+    }
     for name in keys:
         near = get_close_matches(name, KEYS, 1, 0.75)
         if name not in KEYS and near and near[0] not in keys:

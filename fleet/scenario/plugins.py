@@ -13,9 +13,10 @@ from types import ModuleType
 from typing import Any
 from zlib import crc32
 
+from fleet.scenario import watchdog
 from fleet.scenario.errors import bad, shown, unknown
 from fleet.scenario.reading import is_file, near_file, reason
-from fleet.scenario.watchdog import PATIENCE, Stuck, Watch
+from fleet.scenario.watchdog import Stuck, Watch
 
 
 def looks_like_file(name: str) -> bool:
@@ -98,7 +99,7 @@ def _imported(path: Path, key: str) -> _Loaded:
 def what(error: BaseException) -> str:
     """The error of the user's code in a few words."""
     if isinstance(error, Stuck):
-        return f"it does not come to an end within {PATIENCE:g} s"
+        return f"it does not come to an end within {watchdog.PATIENCE:g} s"
     said, name = reason(error), type(error).__name__
     return name if said == name else f"{name}: {said}"
 

@@ -23,7 +23,7 @@ class Stuck(BaseException):
 
 
 class Watch:
-    """A context in which code of the user's in ``folder`` may stay for ``patience`` [s].
+    """A context in which code of the user's in ``folder`` may stay for :data:`PATIENCE`.
 
     It can be entered as often as one likes. Importing libraries and compiling do not count.
 
@@ -31,9 +31,8 @@ class Watch:
         Stuck: in the midst of the code, when it has been there for longer.
     """
 
-    def __init__(self, folder: Path, patience: float = PATIENCE) -> None:
+    def __init__(self, folder: Path) -> None:
         self.folder = str(folder)
-        self.patience = patience
         self._lock = Lock()
         self._thread = 0
         self._entered: float | None = None
@@ -57,7 +56,7 @@ class Watch:
                 return
             if _elsewhere(sys._current_frames().get(self._thread), self.folder):
                 self._entered += TICK
-            elif monotonic() - self._entered > self.patience:
+            elif monotonic() - self._entered > PATIENCE:
                 pythonapi.PyThreadState_SetAsyncExc(c_ulong(self._thread), py_object(Stuck))
 
 

@@ -76,7 +76,7 @@ def finding(kind, seed, folder):
         return f"exit code {code}: {said}"
     if len(said) > MOST_SAID:
         return f"{len(said)} characters: {said}"
-    if code == 2 and len(made.touched) == 1 and not names(said, made.touched[0]):
+    if code == 2 and len(made.touched) == 1 and not names(said, *made.touched[0]):
         return f"does not name {made.touched[0]}: {said}"
     return None
 
@@ -90,23 +90,22 @@ def checked(path):
     return 0, ""
 
 
-def names(said, key):
-    """Whether the message names the key, or the part of it that is wrong."""
-    return (
-        any(part in said for part in (key, key.rpartition(".")[2]))
-        or "TOML" in said
-        or "is missing" in said
-    )
+def names(said, key, value):
+    """Whether the message names the key, or a part of it, or where the fault is otherwise."""
+    table, _, name = key.rpartition(".")
+    parts = [name, value.strip('"'), *([f"{table}:"] if "." in table else [])]
+    return any(part in said for part in [*parts, "TOML", "is missing"])
 
 
 def look(kind, seeds, folder, monkeypatch):
     monkeypatch.chdir(folder)
     monkeypatch.setenv("COLUMNS", "200")
     found = {seed: what for seed in seeds if (what := finding(kind, seed, folder))}
+    said = []
     for seed, what in list(found.items())[:5]:
         made = nasty.draw(kind, seed)
-        print(f"{kind} {seed}: {what[:600]}\n  {made.arguments}\n  {made.files}"[:3000])
-    assert not found, f"{len(found)} of {len(seeds)}"
+        said.append(f"{kind} {seed}: {what[:600]}\n  {made.arguments}\n  {made.files}"[:3000])
+    assert not found, f"{len(found)} of {len(seeds)}\n" + "\n".join(said)
 
 
 @pytest.mark.parametrize("kind", nasty.KINDS)
