@@ -17,10 +17,10 @@ from pathlib import Path
 from fleet.motion.motions import MOTIONS
 from fleet.study import Job, run_jobs
 from fleet.study.job import Outcome
-from fleet.study.ledger import reading, writing
+from fleet.study.ledger import reading
+from fleet.study.open_ledger import writing
 from fleet.study.study_file import study_from
 from fleet.study.sweeping import sweep
-from fleet.study.version import program_version
 
 TURNS = 3  # of which the fastest counts: others may be at work on the machine
 FOLDER = Path(__file__).resolve().parent
@@ -108,13 +108,13 @@ def plan():
     with tempfile.TemporaryDirectory() as out:
         folder = Path(out)
         with writing(folder) as ledger:
-            first, _ = timed(lambda: ledger.plan(study.jobs(), program_version()))
+            first, _ = timed(lambda: ledger.plan(study.jobs()))
             row = json.dumps({f"figure_{n}": n / 7 for n in range(36)})
             ledger.record(Outcome(key, "done", row, {}, "", 1, 0.02) for key in ledger.todo()[:-10])
 
         def resume():
             with writing(folder) as ledger:
-                ledger.plan(study.jobs(), program_version())
+                ledger.plan(study.jobs())
                 return len(ledger.todo()), ledger.counts()
 
         again, (left, counts) = timed(resume)

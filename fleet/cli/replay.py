@@ -18,21 +18,26 @@ DIFFERENT = 1
 @click.argument("key")
 @click.option("--rrd", type=RecordingFile(), help="Record the run to this file.")
 @click.option("--view", is_flag=True, help="Watch the run in the Rerun viewer as it goes.")
+@click.option("--trust", is_flag=True,
+              help="Run Python files that FOLDER names, though you have not swept with them.",
+              )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
-def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool) -> None:
+def command(
+    folder: Path, key: str, rrd: Path | None, view: bool, trust: bool, as_json: bool
+) -> None:
     """Run one run of a sweep again, and compare it with what the sweep found.
 
     FOLDER is that of the sweep. KEY is a key of runs.parquet, or its first digits. Exit code 1
-    if the run is not the same to the last bit.
+    if the run is not the same to the last bit. A folder is data, and may come from anybody:
+    Python files that it names are run only if you have swept with them as they are.
     """
     from fleet.cli.exits import say
     from fleet.cli.progress import RunProgress
     from fleet.cli.summary import print_summary
     from fleet.observer import Observer
     from fleet.study.kept import kept_run
-    from fleet.study.version import program_version
 
-    kept = kept_run(folder, key)
+    kept = kept_run(folder, key, trust=trust)
     observers: list[Observer] = [RunProgress(kept.scenario.rounds)] if sys.stderr.isatty() else []
     if rrd is not None or view:
         from fleet.replay import recorder
@@ -46,8 +51,8 @@ def command(folder: Path, key: str, rrd: Path | None, view: bool, as_json: bool)
     differences = kept.differences(summary)
     for difference in differences:
         say(difference)
-    if kept.version != program_version():
-        say(f"the run is of version {kept.version}; this is {program_version()}")
+    for change in kept.changes():
+        say(change)
     if differences:
         say(f"run {kept.key[:12]} is not the run that is kept")
         sys.exit(DIFFERENT)

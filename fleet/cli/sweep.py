@@ -17,9 +17,16 @@ from fleet.cli.resuming import conclude, progress, resumable, this_command
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [all cores]")
 @click.option("--scheduler", metavar="ADDRESS",
               help="A Dask scheduler to run on, such as tcp://127.0.0.1:8786.")  # fmt: skip
+@click.option("--limit", type=click.FloatRange(min=0.0, min_open=True), metavar="SECONDS",
+              help="End a run that takes longer; it counts as failed.  [3600]")  # fmt: skip
 @click.option("--retry", is_flag=True, help="Run those again that failed.")
 def command(
-    study: Path, out: Path, workers: int | None, scheduler: str | None, retry: bool
+    study: Path,
+    out: Path,
+    workers: int | None,
+    scheduler: str | None,
+    limit: float | None,
+    retry: bool,
 ) -> None:
     """Run every combination of a study with every seed, in parallel.
 
@@ -29,12 +36,13 @@ def command(
     Exit codes: 0 done, 1 some runs failed, 2 bad input, 3 the disk is full or the scheduler is
     lost, 130 Ctrl-C, 143 SIGTERM.
     """
+    from fleet.study.local import LIMIT
     from fleet.study.sweeping import sweep
 
     with resumable():
         with progress("sweep") as show:
             result = sweep(
                 study, out, workers=workers, scheduler=scheduler, retry=retry,
-                progress=show, say=say, command=this_command(),
+                limit=limit or LIMIT, progress=show, say=say, command=this_command(),
             )  # fmt: skip
         conclude(result)

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 from fleet.scenario.errors import bad
 from fleet.study.endings import BrokenOff
 from fleet.study.job import Job, Outcome
-from fleet.study.local import HEARTBEAT, Take, killed
+from fleet.study.local import HEARTBEAT, Take, killed, overdue
 from fleet.study.version import program_version
 from fleet.study.worker import Worker
 
@@ -52,7 +52,7 @@ class ClusterExecutor:
         BadInput: dask.distributed is not installed; it is the extra "cluster".
     """
 
-    def __init__(self, scheduler: str) -> None:
+    def __init__(self, scheduler: str, limit: float | None = None) -> None:
         try:
             connect: Any = import_module("distributed").Client
         except ModuleNotFoundError as error:
@@ -64,6 +64,7 @@ class ClusterExecutor:
             self._client = connect(scheduler, timeout=ANSWER, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise BrokenOff(f"no Dask scheduler answers at {scheduler!r} ({error})") from error
+        self._limit = limit
         self._sent: dict[str, Dispatched] = {}
         self._again: deque[Bundle] = deque()
         self._numbers = count()
@@ -126,6 +127,7 @@ class ClusterExecutor:
         keys = [f"fleet-{bundle[0].key[:16]}-{next(self._numbers)}" for bundle in bundles]
         futures = self._client.map(
             work, bundles, version=program_version(), folder=str(Path.cwd()),
+            limit=self._limit,
             key=keys, retries=0, pure=False,
         )  # fmt: skip
         self._sent |= {
@@ -193,7 +195,9 @@ class ClusterExecutor:
 _mine = threading.local()  # the worker process of this thread of a Dask worker
 
 
-def work(bundle: Bundle, *, version: str, folder: str) -> list[Outcome] | str:
+def work(
+    bundle: Bundle, *, version: str, folder: str, limit: float | None = None
+) -> list[Outcome] | str:
     """What a thread of a Dask worker does with a bundle; a sentence if it must not."""
     if program_version() != version:
         return (
@@ -202,15 +206,19 @@ def work(bundle: Bundle, *, version: str, folder: str) -> list[Outcome] | str:
         )
     # Dask's workers may not have children, unless configured so; ours end with their parent.
     multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]
-    return [_run_apart(job, folder) for job in bundle]
+    return [_run_apart(job, folder, limit) for job in bundle]
 
 
-def _run_apart(job: Job, folder: str) -> Outcome:
+def _run_apart(job: Job, folder: str, limit: float | None) -> Outcome:
     """Run a job in this thread's worker process, a new one if the last one died."""
     if getattr(_mine, "folder", None) != folder:
         _mine.worker, _mine.folder = Worker(folder), folder
     worker: Worker = _mine.worker
     worker.give(job)
+    if limit is not None and not worker.answers_within(limit):
+        worker.close()
+        _mine.folder = None
+        return overdue(job, limit)
     outcome = worker.answer()
     if outcome is None:
         outcome = killed(job, worker.death())

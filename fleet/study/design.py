@@ -108,14 +108,18 @@ class Study:
         Raises:
             BadInput: a cell's scenario cannot be used. All that is wrong is said.
         """
+        origins: dict[int, str] = {}  # of each cell: looked up on the disk once
         for seed in self.seeds:
-            for cell in self.resolved:
-                yield Job.of(
+            for number, cell in enumerate(self.resolved):
+                job = Job.of(
                     cell.scenario | {"seed": seed},
                     cell=cell.name,
                     labels=cell.labels | {"seed": seed},
                     tables=self.tables,
+                    origin=origins.get(number),
                 )
+                origins[number] = job.origin
+                yield job
 
     @cached_property
     def resolved(self) -> list[Cell]:

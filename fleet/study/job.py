@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
-from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from fleet.scenario.maps import image_of
-from fleet.study.version import program_version, source_digest
+from fleet.study.inputs import made_by
 
 PLAY = "fleet.study.play:play"
 """The work function of a study: play the scenario, give its summary."""
 
-Status: TypeAlias = Literal["done", "raised", "killed"]
+Status: TypeAlias = Literal["done", "raised", "killed", "overdue", "stale"]
 
-FILE_NAME = re.compile(r'"([^"]+\.(?:csv|json|npy|py|toml|txt|ya?ml))(?::\w+)?"')
+canonical = json.JSONEncoder(sort_keys=True, separators=(",", ":")).encode
+"""A value as JSON that is the same text for the same value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +34,7 @@ class Job:
     labels: dict[str, Any] = field(default_factory=dict)  # columns beside those of the row
     tables: tuple[str, ...] = ()  # tables asked for besides the row
     function: str = PLAY
+    origin: str = "{}"  # JSON of fleet.study.inputs.made_by: all else that the row depends on
 
     @classmethod
     def of(
@@ -47,12 +45,14 @@ class Job:
         labels: Mapping[str, Any] | None = None,
         tables: tuple[str, ...] = (),
         function: str = PLAY,
+        origin: str | None = None,
     ) -> Job:
         """A job with the key that belongs to what it runs.
 
-        The key is a sha256 of the scenario with its keys in order, of the files that it names,
-        of the work function and of the program version. ``cell`` and ``labels`` are no part of
-        it: one run may stand in several cells.
+        The key is a sha256 of the scenario with its keys in order and of everything else that
+        the row depends on: see :func:`fleet.study.inputs.made_by`. ``cell`` and ``labels`` are
+        no part of it: one run may stand in several cells. ``origin`` is that of a job of the same
+        files, tables and function, if there is one: finding it anew reads the disk.
 
         Raises:
             ModuleNotFoundError: the work function's module is not there.
@@ -60,15 +60,32 @@ class Job:
         """
         described = dict(scenario)
         text = canonical(described)
-        made_by: dict[str, Any] = {"version": program_version()}
-        if files := dict(file_digests(text)):
-            made_by["files"] = files
-        if tables:
-            made_by["tables"] = sorted(tables)
-        if function != PLAY:
-            made_by["function"] = [function, source_digest(function.partition(":")[0])]
-        key = hashlib.sha256(f"{text}\n{canonical(made_by)}".encode()).hexdigest()
-        return cls(key, described, cell, dict(labels or {}), tables, function)
+        if origin is None:
+            ours = function.startswith("fleet.")
+            origin = canonical(made_by(described, tables, function, ours=ours))
+        key = key_of(text, origin)
+        return cls(key, described, cell, dict(labels or {}), tables, function, origin)
+
+    @property
+    def made_by(self) -> dict[str, Any]:
+        """What the row depends on besides the scenario."""
+        described: dict[str, Any] = json.loads(self.origin)
+        return described
+
+
+def key_of(scenario: str, origin: str) -> str:
+    """The key of a job, from both as canonical JSON."""
+    return hashlib.sha256(f"{scenario}\n{origin}".encode()).hexdigest()
+
+
+def checksum(*parts: str | bytes) -> str:
+    """A sha256 of texts and bytes, by which damage to them is seen."""
+    whole = hashlib.sha256()
+    for part in parts:
+        data = part.encode() if isinstance(part, str) else bytes(part)
+        whole.update(f"{len(data)}\0".encode())
+        whole.update(data)
+    return whole.hexdigest()
 
 
 class Outcome(NamedTuple):
@@ -81,27 +98,3 @@ class Outcome(NamedTuple):
     error: str  # a traceback, or how the worker died; empty if done
     attempts: int
     seconds: float  # in the worker
-
-
-canonical = json.JSONEncoder(sort_keys=True, separators=(",", ":")).encode
-"""A value as JSON that is the same text for the same value."""
-
-
-def file_digests(scenario: str) -> Iterator[tuple[str, str]]:
-    """The files of the user's that a scenario, as JSON, names; each with a sha256 of its bytes.
-
-    A map is two files: the image that a YAML file names counts too.
-    """
-    for quoted in FILE_NAME.findall(scenario):
-        path = Path(json.loads(f'"{quoted}"'))
-        named = [path]
-        if path.suffix in {".yaml", ".yml"}:
-            named.append(image_of(path, "world.file"))
-        for file in named:
-            if file.is_file():
-                yield str(file), _file_digest(file, file.stat().st_mtime_ns)
-
-
-@lru_cache(64)
-def _file_digest(path: Path, _modified: int) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -14,8 +14,11 @@ from fleet.results import Summary
 from fleet.scenario.errors import bad, or_list
 from fleet.scenario.loading import scenario_from
 from fleet.scenario.model import Scenario
+from fleet.study.inputs import changed, code_named
 from fleet.study.job import PLAY
 from fleet.study.ledger import Ledger, reading
+from fleet.study.trust import unnamed
+from fleet.study.version import libraries, program_version
 
 SHORT = 12  # digits of a key that people are shown
 UNLIKE = ("wall_time",)  # figures that differ from run to run
@@ -28,7 +31,7 @@ class Kept:
     key: str
     scenario: Scenario
     row: dict[str, Any] | None  # its summary; None: it is not done, or failed
-    version: str  # of the program that the key belongs to
+    made_by: dict[str, Any]  # what it depends on besides: fleet.study.inputs.made_by
     folder: Path  # that the user's files are named from
 
     def play(self, observers: Sequence[Observer] = ()) -> Summary:
@@ -37,6 +40,18 @@ class Kept:
 
         with chdir(self.folder if self.folder.is_dir() else Path.cwd()):
             return run(self.scenario, observers)
+
+    def changes(self) -> list[str]:
+        """What is not as it was when the run was made: program, libraries, files."""
+        now = {"program": program_version(), **libraries()}
+        then = {"program": self.made_by["version"], **self.made_by["libraries"]}
+        found = [
+            f"{name} was {then[name]}, is {now.get(name, 'not there')}"
+            for name in then
+            if then[name] != now.get(name)
+        ]
+        with chdir(self.folder if self.folder.is_dir() else Path.cwd()):
+            return found + [f"{name} has changed since" for name in changed(self.made_by)]
 
     def differences(self, summary: Summary) -> list[str]:
         """How a summary differs from the one that is kept: nothing, if it is the same run."""
@@ -51,11 +66,15 @@ class Kept:
         ]
 
 
-def kept_run(folder: Path, prefix: str) -> Kept:
+def kept_run(folder: Path, prefix: str, *, trust: bool = False) -> Kept:
     """The run whose key begins with ``prefix``.
 
+    A folder is data: Python files that it names are run only if this user has swept with the same
+    files at the same paths, or if ``trust`` is given.
+
     Raises:
-        BadInput: there is none, or more than one, or it is no run of a scenario.
+        BadInput: there is none, or more than one, or it is no run of a scenario, or it needs
+            code that the user has not named.
     """
     with reading(folder) as ledger:
         key = _find(ledger, folder, prefix.lower())
@@ -63,9 +82,18 @@ def kept_run(folder: Path, prefix: str) -> Kept:
         if job.function != PLAY:
             raise bad("KEY", f"is of work by {job.function!r}; expected a run of a scenario")
         started_in = Path(ledger.meta().get("folder", "."))
-        row, version = ledger.row(key), ledger.version(key)
+        row = ledger.row(key)
     with chdir(started_in if started_in.is_dir() else Path.cwd()):
-        return Kept(key, scenario_from(job.scenario), row, version, started_in)
+        named = code_named(job.made_by).items()
+        strange = unnamed((Path(name).resolve(), digest) for name, digest in named)
+        if strange and not trust:
+            files = ", ".join(map(str, strange))
+            raise bad(
+                "KEY",
+                f"run {key[:SHORT]} runs {files}, which you have not swept with as it was then;"
+                f" look at it, and give --trust to run it",
+            )
+        return Kept(key, scenario_from(job.scenario), row, job.made_by, started_in)
 
 
 def _find(ledger: Ledger, folder: Path, prefix: str) -> str:

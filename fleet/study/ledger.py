@@ -1,40 +1,48 @@
 """The one record of what has been done: a SQLite file with one writer and any number of readers.
 
-``job`` holds what was ever asked for, ``run`` what became of it, ``side`` the tables that came
-with it, and ``plan`` which jobs the study as it stands is made of, in order. A row of ``run``
-is written once, in a transaction that is on the disk before anybody is told of it.
+``job`` holds what was ever asked for, ``origin`` what that depends on besides its scenario,
+``run`` what became of it, ``side`` the tables that came with it, and ``plan`` which jobs the
+study as it stands is made of, in order. A row of ``run`` is written once, in a transaction that is
+on the disk before anybody is told of it. Whatever is read is held against its checksum; a job's is
+its key.
 """
 
 from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack, closing, contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from functools import cache
 from pathlib import Path
+from shutil import copyfile
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from fleet.scenario.errors import BadInput, bad
-from fleet.study.endings import BrokenOff
-from fleet.study.job import Job, Outcome, Status, canonical
-from fleet.study.lock import sole
+from fleet.study.inputs import code_named
+from fleet.study.job import Job, Status, checksum, key_of
 
 NAME = "ledger.sqlite"
-FORMAT = 1
+FORMAT = 2
 SCHEMA = """
+CREATE TABLE IF NOT EXISTS origin(number INTEGER PRIMARY KEY, made_by TEXT NOT NULL UNIQUE);
 CREATE TABLE IF NOT EXISTS job(
     key TEXT PRIMARY KEY, scenario TEXT NOT NULL, tables TEXT NOT NULL, function TEXT NOT NULL,
-    version TEXT NOT NULL);
+    origin INTEGER NOT NULL);
 CREATE TABLE IF NOT EXISTS plan(
-    position INTEGER PRIMARY KEY, key TEXT NOT NULL, cell TEXT NOT NULL, labels TEXT NOT NULL);
+    position INTEGER PRIMARY KEY, key TEXT NOT NULL, cell TEXT NOT NULL, labels TEXT NOT NULL,
+    checksum TEXT NOT NULL);
 CREATE INDEX IF NOT EXISTS plan_key ON plan(key);
 CREATE TABLE IF NOT EXISTS run(
     key TEXT PRIMARY KEY, status TEXT NOT NULL, row TEXT NOT NULL, error TEXT NOT NULL,
-    attempts INTEGER NOT NULL, seconds REAL NOT NULL);
+    attempts INTEGER NOT NULL, seconds REAL NOT NULL, checksum TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS side(
-    key TEXT NOT NULL, name TEXT NOT NULL, stream BLOB NOT NULL, PRIMARY KEY(key, name));
+    key TEXT NOT NULL, name TEXT NOT NULL, stream BLOB NOT NULL, checksum TEXT NOT NULL,
+    PRIMARY KEY(key, name));
 CREATE TABLE IF NOT EXISTS meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 """
+REVISION, IDENTITY = "revision", "identity"  # in meta: see Ledger.stamp
 
 
 class Counts(NamedTuple):
@@ -60,11 +68,21 @@ class Failure(NamedTuple):
     scenario: dict[str, Any]
 
 
+class Origin(NamedTuple):
+    """What a job depends on besides its scenario."""
+
+    text: str  # JSON of fleet.study.inputs.made_by
+    version: str  # of the program
+    libraries: str  # with their versions
+
+
 class Ledger:
     """The record of one folder, read."""
 
-    def __init__(self, database: sqlite3.Connection) -> None:
+    def __init__(self, database: sqlite3.Connection, path: Path) -> None:
         self._database = database
+        self._path = path
+        self._origin = cache(self._read_origin)
 
     def counts(self) -> Counts:
         """How many runs are planned, and how many of them came to what."""
@@ -83,7 +101,13 @@ class Ledger:
 
     def meta(self) -> dict[str, Any]:
         """What is known of the study as a whole."""
-        return {n: json.loads(v) for n, v in self._database.execute("SELECT * FROM meta")}
+        found = self._database.execute("SELECT name, value FROM meta")
+        return {name: self._parsed(value, f"the entry {name!r}") for name, value in found}
+
+    def stamp(self) -> str:
+        """What tables are made from: another text whenever the plan or a run is another."""
+        meta = self.meta()
+        return f"{meta.get(IDENTITY)}:{meta.get(REVISION, 0)}"
 
     def failures(self) -> list[Failure]:
         """The planned jobs that came to nothing, in the order of the plan."""
@@ -93,7 +117,7 @@ class Ledger:
             " WHERE status <> 'done' GROUP BY key ORDER BY min(position)"
         )
         return [
-            Failure(key, cell, status, error, json.loads(scenario))
+            Failure(key, cell, status, error, self._parsed(scenario, f"run {key[:12]}"))
             for key, cell, status, error, scenario in found
         ]
 
@@ -101,23 +125,39 @@ class Ledger:
         """What was found, a row a planned run: labels over the work function's row, and more.
 
         A label of None says that the cell does not set the key: what the row says stands.
+        ``version`` and ``libraries`` say what the run was made with.
+
+        Raises:
+            BadInput: the ledger is damaged.
         """
         found = self._database.execute(
-            "SELECT cell, labels, row, key, version, scenario FROM plan"
-            " JOIN run USING (key) JOIN job USING (key) WHERE status = 'done' ORDER BY position"
+            "SELECT key, cell, labels, plan.checksum, scenario, origin, row, error, run.checksum"
+            " FROM plan JOIN run USING (key) JOIN job USING (key)"
+            " WHERE status = 'done' ORDER BY position"
         )
-        for cell, labels, row, key, version, scenario in found:
+        for key, cell, labels, planned, scenario, origin, row, error, whole in found:
+            what = f"run {str(key)[:12]}"
+            self._hold(planned == checksum(key, cell, labels), f"the plan of {what}")
+            self._hold(whole == checksum(key, "done", row, error), what)
+            made_by = self._origin(origin)
+            self._hold(key == key_of(scenario, made_by.text), f"the scenario of {what}")
             yield {
-                "cell": cell, **json.loads(row), **_given(json.loads(labels)),
-                "key": key, "version": version, "scenario": scenario,
-            }  # fmt: skip
+                "cell": cell,
+                **self._parsed(row, what),
+                **_given(self._parsed(labels, what)),
+                "key": key,
+                "version": made_by.version,
+                "libraries": made_by.libraries,
+                "scenario": scenario,
+            }
 
     def labels(self) -> list[str]:
         """The names of all labels, in the order in which they first come."""
         found = self._database.execute(
             "SELECT labels FROM plan GROUP BY cell ORDER BY min(position)"
         )
-        return list(dict.fromkeys(name for (labels,) in found for name in json.loads(labels)))
+        plans = (self._parsed(labels, "the plan") for (labels,) in found)
+        return list(dict.fromkeys(name for labels in plans for name in labels))
 
     def table_names(self) -> list[str]:
         """The tables that some planned run brought besides its row."""
@@ -128,11 +168,16 @@ class Ledger:
 
     def streams(self, name: str) -> Iterator[tuple[str, str, bytes]]:
         """Cell, labels (JSON) and Arrow stream of a table, for each planned run that has it."""
-        yield from self._database.execute(
-            "SELECT cell, json_set(labels, '$.key', key), stream FROM plan JOIN side USING (key)"
-            " JOIN run USING (key) WHERE name = ? AND status = 'done' ORDER BY position",
+        found = self._database.execute(
+            "SELECT cell, json_set(labels, '$.key', key), stream, key, side.checksum FROM plan"
+            " JOIN side USING (key) JOIN run USING (key)"
+            " WHERE name = ? AND status = 'done' ORDER BY position",
             (name,),
         )
+        for cell, labels, stream, key, whole in found:
+            what = f"the table {name!r} of run {str(key)[:12]}"
+            self._hold(whole == checksum(key, name, stream), what)
+            yield cell, labels, stream
 
     def find(self, prefix: str) -> list[str]:
         """The keys, in the plan or not, that begin with ``prefix``; ten at most."""
@@ -147,224 +192,161 @@ class Ledger:
         return [key for (key,) in self._database.execute("SELECT key FROM job ORDER BY key")]
 
     def job(self, key: str) -> Job:
-        """What is run under a key."""
-        scenario, tables, function = self._database.execute(
-            "SELECT scenario, tables, function FROM job WHERE key = ?", (key,)
-        ).fetchone()
-        return Job(key, json.loads(scenario), tables=tuple(json.loads(tables)), function=function)
+        """What is run under a key: the very job that the key was made of.
 
-    def version(self, key: str) -> str:
-        """The program version that a key belongs to."""
-        (version,) = self._database.execute(
-            "SELECT version FROM job WHERE key = ?", (key,)
+        Raises:
+            BadInput: what is kept under the key is another job.
+        """
+        scenario, tables, function, origin = self._database.execute(
+            "SELECT scenario, tables, function, origin FROM job WHERE key = ?", (key,)
         ).fetchone()
-        return str(version)
+        made_by = self._origin(origin)
+        what = f"the job of run {key[:12]}"
+        job = Job(
+            key,
+            self._parsed(scenario, what),
+            tables=tuple(self._parsed(tables, what)),
+            function=function,
+            origin=made_by.text,
+        )
+        named = job.made_by
+        self._hold(
+            key == key_of(scenario, made_by.text)
+            and named["function"][0] == function
+            and named.get("tables", []) == sorted(job.tables),
+            what,
+        )
+        return job
 
     def row(self, key: str) -> dict[str, Any] | None:
         """What a run gave; None: it is not done."""
         found = self._database.execute(
-            "SELECT row FROM run WHERE key = ? AND status = 'done'", (key,)
+            "SELECT row, error, checksum FROM run WHERE key = ? AND status = 'done'", (key,)
         ).fetchone()
-        row: dict[str, Any] | None = json.loads(found[0]) if found else None
+        if found is None:
+            return None
+        text, error, whole = found
+        self._hold(whole == checksum(key, "done", text, error), f"run {key[:12]}")
+        row: dict[str, Any] = self._parsed(text, f"run {key[:12]}")
         return row
 
-
-class OpenLedger(Ledger):
-    """The record of one folder, written to."""
-
-    def plan(self, jobs: Iterable[Job], version: str) -> bool:
-        """Make ``jobs`` what the study is made of; whether that changes anything.
-
-        What was done before is kept. A job that comes twice in one cell counts once.
-        """
-        database, before = self._database, self._database.total_changes
-        with self._transaction():
-            for job in self._from_first_change(_distinct(jobs)):
-                database.execute(
-                    "INSERT OR IGNORE INTO job VALUES (?, ?, ?, ?, ?)",
-                    (
-                        job.key, canonical(job.scenario), canonical(job.tables),
-                        job.function, version,
-                    ),
-                )  # fmt: skip
-                database.execute(
-                    "INSERT INTO plan(key, cell, labels) VALUES (?, ?, ?)",
-                    (job.key, job.cell, json.dumps(job.labels)),
-                )
-        return database.total_changes > before
-
-    def _from_first_change(self, jobs: Iterable[Job]) -> Iterator[Job]:
-        """The jobs from the first one that is not in its place; the plan is cut off there."""
-        planned = self._database.execute("SELECT key, cell, labels FROM plan ORDER BY position")
-        same, unchanged = 0, True
-        for job in jobs:
-            place = (job.key, job.cell, json.dumps(job.labels))
-            if unchanged and planned.fetchone() == place:
-                same += 1
-                continue
-            if unchanged:
-                unchanged = False
-                self._cut(same)
-            yield job
-        if unchanged:
-            self._cut(same)
-
-    def _cut(self, length: int) -> None:
-        self._database.execute("DELETE FROM plan WHERE position > ?", (length,))
-
-    def describe(self, meta: Mapping[str, Any]) -> None:
-        """Write down what is known of the study as a whole."""
-        with self._transaction():
-            self._database.executemany(
-                "INSERT OR REPLACE INTO meta VALUES (?, ?)",
-                [(name, json.dumps(value)) for name, value in meta.items()],
-            )
-
-    def aside(self, version: str) -> tuple[int, int]:
-        """Runs that are done but not in the plan: of this program version, and of others."""
-        same, others = self._database.execute(
-            "SELECT total(version = ?), total(version <> ?) FROM run JOIN job USING (key)"
-            " WHERE status = 'done' AND key NOT IN (SELECT key FROM plan)",
-            (version, version),
-        ).fetchone()
-        return int(same), int(others)
-
-    def todo(self, *, retry: bool = False) -> list[str]:
-        """The keys of the plan that are to be run, in order; with the failed ones to ``retry``."""
-        settled = "status = 'done'" if retry else "status IS NOT NULL"
+    def code(self) -> Iterator[tuple[Path, str]]:
+        """The user's Python files that planned jobs run, each with the sha256 that it had."""
         found = self._database.execute(
-            f"SELECT key FROM plan LEFT JOIN run USING (key) WHERE NOT coalesce({settled}, 0)"  # noqa: S608  # one of the two texts above
-            " GROUP BY key ORDER BY min(position)"
+            "SELECT DISTINCT origin FROM plan JOIN job USING (key)"
+        ).fetchall()
+        for (number,) in found:
+            described = self._parsed(self._origin(number).text, f"origin {number}")
+            for name, digest in code_named(described).items():
+                yield Path(name), digest
+
+    def faults(self) -> Iterator[str]:
+        """What is wrong with the file as SQLite sees it, and with any run, in the plan or not."""
+        for (said,) in self._database.execute("PRAGMA integrity_check"):
+            if said != "ok":
+                yield f"{str(self._path)!r} is damaged: {said}"
+        for key, *parts, whole in self._database.execute(
+            "SELECT key, status, row, error, checksum FROM run ORDER BY key"
+        ):
+            if whole != checksum(key, *map(str, parts)):
+                yield str(self._damage(f"run {key[:12]}"))
+
+    def _read_origin(self, number: int) -> Origin:
+        found = self._database.execute(
+            "SELECT made_by FROM origin WHERE number = ?", (number,)
+        ).fetchone()
+        self._hold(found is not None, f"origin {number}")
+        described = self._parsed(found[0], f"origin {number}")
+        versions = described.get("libraries", {}).items()
+        return Origin(
+            found[0],
+            str(described.get("version", "")),
+            ", ".join(f"{name} {version}" for name, version in versions),
         )
-        return [key for (key,) in found]
 
-    def record(self, outcomes: Iterable[Outcome]) -> None:
-        """Write outcomes down, all or none; what is done already stays as it is."""
-        with self._transaction():
-            for o in outcomes:
-                written = self._database.execute(
-                    "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT(key) DO UPDATE SET"
-                    " status = excluded.status, row = excluded.row, error = excluded.error,"
-                    " attempts = excluded.attempts, seconds = excluded.seconds"
-                    " WHERE run.status <> 'done'",
-                    (o.key, o.status, o.row, o.error, o.attempts, o.seconds),
-                )
-                if written.rowcount:
-                    self._database.executemany(
-                        "INSERT OR REPLACE INTO side VALUES (?, ?, ?)",
-                        [(o.key, name, stream) for name, stream in o.tables.items()],
-                    )
-
-    @contextmanager
-    def _transaction(self) -> Iterator[None]:
-        """All of it on the disk at the end, or nothing of it.
-
-        Raises:
-            BrokenOff: the disk is full, or fails.
-        """
+    def _parsed(self, text: str, what: str) -> Any:
         try:
-            self._database.execute("BEGIN IMMEDIATE")
-            yield
-            self._database.execute("COMMIT")
-        except BaseException as error:
-            with suppress(sqlite3.Error):  # a full disk has ended the transaction by itself
-                self._database.execute("ROLLBACK")
-            if isinstance(error, sqlite3.OperationalError) and not _is_ours(error):
-                raise _unwritten(error) from error
-            raise
+            return json.loads(text)
+        except (ValueError, TypeError):
+            raise self._damage(what) from None
 
+    def _hold(self, good: bool, what: str) -> None:
+        if not good:
+            raise self._damage(what)
 
-@contextmanager
-def writing(folder: Path) -> Iterator[OpenLedger]:
-    """The folder's ledger, made if need be, for this process alone to write.
-
-    Raises:
-        BadInput: the folder cannot be used, or another process is at work in it.
-        BrokenOff: the disk is full, or fails.
-    """
-    with ExitStack() as stack:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(sole(folder))
-        except OSError as error:
-            raise bad("", f"{str(folder)!r} cannot be used: {error.strerror}") from error
-        database = sqlite3.connect(folder / NAME, isolation_level=None, timeout=10.0)
-        stack.callback(_close, database)
-        try:
-            database.execute("PRAGMA journal_mode = WAL")
-            database.execute("PRAGMA synchronous = FULL")
-            database.execute("PRAGMA cache_size = -65536")  # KiB
-            if _is_new(database):
-                database.executescript(f"{SCHEMA} PRAGMA user_version = {FORMAT};")
-            _check_format(database, folder)
-        except sqlite3.OperationalError as error:
-            raise _unwritten(error) from error
-        except sqlite3.DatabaseError as error:
-            raise _unread(folder, error) from error
-        yield OpenLedger(database)
+    def _damage(self, what: str) -> BadInput:
+        return bad("", f"{str(self._path)!r} is damaged: {what} is not as it was written")
 
 
 @contextmanager
 def reading(folder: Path) -> Iterator[Ledger]:
     """The folder's ledger as it stands, also while a study is writing it.
 
+    Nothing is written to the folder: what a kill left half done is put right in a copy.
+
     Raises:
-        BadInput: there is none.
+        BadInput: there is none, or it is damaged.
     """
     path = folder / NAME
     if not path.is_file():
         raise bad("", f"{str(folder)!r} holds no study; expected a folder that a sweep wrote to")
-    with closing(_open_read_only(path)) as database:
+    with ExitStack() as stack:
         try:
-            database.execute("BEGIN")  # one view of it, while others go on writing
-            _check_format(database, folder)
+            try:
+                database = stack.enter_context(closing(_view(path, "ro")))
+            except sqlite3.OperationalError as error:
+                if error.sqlite_errorcode & 0xFF not in UNMENDED:
+                    raise
+                copy = _copy(path, Path(stack.enter_context(TemporaryDirectory(prefix="fleet-"))))
+                database = stack.enter_context(closing(_view(copy, "rw")))
+            check_format(database, folder)
+            yield Ledger(database, path)
         except sqlite3.DatabaseError as error:
-            raise _unread(folder, error) from error
-        yield Ledger(database)
+            raise unread(folder, error) from error
 
 
-def _open_read_only(path: Path) -> sqlite3.Connection:
-    return sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True, timeout=10.0)
+UNMENDED = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
+"""How SQLite says that it would have to write before it can read."""
 
 
-def _close(database: sqlite3.Connection) -> None:
-    with suppress(sqlite3.DatabaseError):  # somebody is reading it, or it is beyond repair
-        database.execute("PRAGMA journal_mode = DELETE")  # one file, to be copied about
-    database.close()
+def _view(path: Path, mode: str) -> sqlite3.Connection:
+    """One view of a ledger, while others go on writing it."""
+    database = sqlite3.connect(
+        f"{path.resolve().as_uri()}?mode={mode}", uri=True, timeout=10.0, isolation_level=None
+    )
+    try:
+        database.execute("BEGIN")
+        database.execute("SELECT count(*) FROM sqlite_schema").fetchone()  # the view begins here
+    except BaseException:
+        database.close()
+        raise
+    return database
 
 
-def _distinct(jobs: Iterable[Job]) -> Iterator[Job]:
-    seen = set()
-    for job in jobs:
-        if (job.key, job.cell) not in seen:
-            seen.add((job.key, job.cell))
-            yield job
+def _copy(path: Path, folder: Path) -> Path:
+    """A copy of a ledger with what SQLite needs to put it right."""
+    for suffix in ("", "-wal", "-journal"):
+        part = path.with_name(path.name + suffix)
+        if part.exists():
+            copyfile(part, folder / part.name)
+    return folder / path.name
 
 
 def _given(labels: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in labels.items() if value is not None}
 
 
-def _check_format(database: sqlite3.Connection, folder: Path) -> None:
+def check_format(database: sqlite3.Connection, folder: Path) -> None:
+    """See that a ledger is of this program's format.
+
+    Raises:
+        BadInput: it is of another one.
+    """
     (version,) = database.execute("PRAGMA user_version").fetchone()
     if version != FORMAT:
         raise bad("", f"{str(folder / NAME)!r} is of format {version}; expected {FORMAT}")
 
 
-def _is_new(database: sqlite3.Connection) -> bool:
-    """Whether nothing has been written to it, or not all of its tables."""
-    (version,) = database.execute("PRAGMA user_version").fetchone()
-    return bool(version == 0)
-
-
-def _is_ours(error: sqlite3.OperationalError) -> bool:
-    """Whether it is a mistake in this file, rather than trouble with the disk."""
-    return error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_ERROR
-
-
-def _unwritten(error: sqlite3.Error) -> BrokenOff:
-    return BrokenOff(f"the ledger cannot be written: {error}")
-
-
-def _unread(folder: Path, error: sqlite3.Error) -> BadInput:
+def unread(folder: Path, error: sqlite3.Error) -> BadInput:
+    """What is said of a ledger that SQLite cannot read."""
     return bad("", f"{str(folder / NAME)!r} cannot be read: {error}")

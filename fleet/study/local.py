@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -13,6 +14,7 @@ from fleet.study.job import Job, Outcome
 from fleet.study.worker import Worker
 
 HEARTBEAT = 0.1  # [s] between looks at whether to stop
+LIMIT = 3600.0  # [s] that a job may take, unless the caller says otherwise
 
 Take: TypeAlias = Callable[[], Job | None]
 
@@ -36,10 +38,14 @@ class Executor(Protocol):
 
 
 class LocalExecutor:
-    """As many worker processes as asked for, started as jobs come."""
+    """As many worker processes as asked for, started as jobs come.
 
-    def __init__(self, workers: int | None = None) -> None:
-        self.workers = workers or usable_cores()
+    A job that takes longer than ``limit`` [s] is ended with its worker; None: none is.
+    """
+
+    def __init__(self, workers: int, limit: float | None = None) -> None:
+        self.workers = workers
+        self._limit = limit
         self._folder = str(Path.cwd())
         self._busy: dict[Any, Worker] = {}  # by connection
         self._idle: list[Worker] = []
@@ -50,6 +56,7 @@ class LocalExecutor:
         while self._busy:
             ready = wait(list(self._busy), HEARTBEAT)
             outcomes = [self._outcome(self._busy.pop(connection)) for connection in ready]
+            outcomes += self._overdue()
             self._feed(take)  # nobody shall be idle while the outcomes are written down
             yield outcomes
             self._feed(take)  # what comes again because of them
@@ -73,6 +80,19 @@ class LocalExecutor:
         except (EOFError, OSError) as error:  # the limit of processes, or their server was killed
             raise BrokenOff(f"no worker process can be started: {error!r}") from error
 
+    def _overdue(self) -> list[Outcome]:
+        """The outcomes of jobs that have had their time."""
+        if self._limit is None:
+            return []
+        since = time.monotonic() - self._limit
+        late = [c for c, worker in self._busy.items() if worker.since < since]
+        outcomes = []
+        for worker in map(self._busy.pop, late):
+            assert worker.job is not None
+            outcomes.append(overdue(worker.job, self._limit))
+            worker.close()
+        return outcomes
+
     def _outcome(self, worker: Worker) -> Outcome:
         job, outcome = worker.job, worker.answer()
         if outcome is not None:
@@ -87,6 +107,12 @@ class LocalExecutor:
 def killed(job: Job, cause: str) -> Outcome:
     """The outcome of a job that its worker did not survive."""
     return Outcome(job.key, "killed", "", {}, cause, 1, 0.0)
+
+
+def overdue(job: Job, limit: float) -> Outcome:
+    """The outcome of a job that was ended because it took too long."""
+    said = f"it took longer than {limit:g} s, the limit of a run (--limit)"
+    return Outcome(job.key, "overdue", "", {}, said, 1, limit)
 
 
 def usable_cores() -> int:

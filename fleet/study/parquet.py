@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,6 +11,7 @@ from typing import Any, TypeVar
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from fleet.study.atomic import replacing
 from fleet.study.endings import BrokenOff
 from fleet.study.ledger import Ledger
 
@@ -20,6 +19,7 @@ T = TypeVar("T")
 
 CHUNK = 4096  # rows that are Python objects at a time
 STREAMS = 256  # runs whose side tables are in memory at a time
+STAMP = b"fleet.made_from"  # in a file's metadata: the ledger's stamp
 
 
 def runs_table(rows: Iterable[dict[str, Any]]) -> pa.Table:
@@ -68,29 +68,56 @@ def parquet_pieces(ledger: Ledger, name: str) -> Iterator[pa.Table]:
         yield from side_pieces(ledger, name)
 
 
-def write_parquet(path: Path, pieces: Iterable[pa.Table]) -> None:
+def bring_up_to_date(ledger: Ledger, folder: Path) -> list[Path]:
+    """Write each table that is not made from the ledger as it stands, and remove what is no more.
+
+    A file says in its metadata what it was made from, so whatever ended an earlier call, this one
+    knows what is to be made again. Returns the paths of all tables.
+
+    Raises:
+        BrokenOff: the disk is full, or fails.
+        BadInput: the ledger is damaged.
+    """
+    stamp = ledger.stamp()
+    paths = [folder / f"{name}.parquet" for name in ("runs", *ledger.table_names())]
+    for path in paths:
+        if made_from(path) != stamp:
+            write_parquet(path, parquet_pieces(ledger, path.stem), stamp)
+    for path in set(folder.glob("*.parquet")) - set(paths):
+        if made_from(path).partition(":")[0] == stamp.partition(":")[0]:
+            path.unlink(missing_ok=True)
+    return paths
+
+
+def made_from(path: Path) -> str:
+    """The stamp of the ledger that a file was made from; empty: it is not there, or not ours."""
+    try:
+        metadata = pq.read_schema(path).metadata or {}
+    except (OSError, pa.ArrowException):
+        return ""
+    return str(metadata.get(STAMP, b"").decode())
+
+
+def write_parquet(path: Path, pieces: Iterable[pa.Table], stamp: str) -> None:
     """Write a table; the file appears whole, or the one that was there stays.
 
     Raises:
         BrokenOff: the disk is full, or fails.
     """
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with draft.open("wb") as file:
+        with replacing(path) as draft, draft.open("wb") as file:
             writer = None
             for piece in pieces:
-                writer = writer or pq.ParquetWriter(file, piece.schema, compression="zstd")
-                writer.write_table(piece)
+                if writer is None:
+                    schema = piece.schema.with_metadata({STAMP: stamp})
+                    writer = pq.ParquetWriter(
+                        file, schema, compression="zstd", write_page_checksum=True
+                    )
+                writer.write_table(piece.replace_schema_metadata({STAMP: stamp}))
             if writer is not None:
                 writer.close()
-            file.flush()
-            os.fsync(file.fileno())
-        draft.replace(path)
     except OSError as error:
         raise BrokenOff(f"{str(path)!r} cannot be written: {error.strerror or error}") from error
-    finally:
-        with suppress(OSError):
-            draft.unlink(missing_ok=True)
 
 
 def _labelled(ledger: Ledger, name: str, *, schema_only: bool = False) -> Iterator[pa.Table]:

@@ -15,12 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from fleet.scenario.errors import bad, unknown
 from fleet.study.ledger import Counts, Failure, reading
-from fleet.study.parquet import (
-    parquet_pieces,
-    runs_table,
-    side_table,
-    write_parquet,
-)
+from fleet.study.parquet import bring_up_to_date, runs_table, side_table
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -82,15 +77,12 @@ class StudyResult:
         return self.table(name).to_pandas()
 
     def write(self) -> list[Path]:
-        """Write each table to a Parquet file beside the ledger; none is ever half there.
+        """See that each table is a Parquet file beside the ledger; none is ever half there.
+
+        Files that were made from the ledger as it stands are left as they are.
 
         Raises:
             BrokenOff: the disk is full, or fails.
         """
-        written = []
         with reading(self.folder) as ledger:
-            for name in ("runs", *ledger.table_names()):
-                path = self.folder / f"{name}.parquet"
-                write_parquet(path, parquet_pieces(ledger, name))
-                written.append(path)
-        return written
+            return bring_up_to_date(ledger, self.folder)

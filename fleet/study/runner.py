@@ -8,10 +8,14 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from fleet.study.endings import Interrupted
+from fleet.study import trust
+from fleet.study.atomic import clear_drafts
+from fleet.study.endings import BrokenOff, Interrupted
 from fleet.study.job import Job, Outcome
-from fleet.study.ledger import Counts, OpenLedger, writing
-from fleet.study.local import Executor, LocalExecutor
+from fleet.study.ledger import Counts
+from fleet.study.local import LIMIT, Executor, LocalExecutor, usable_cores
+from fleet.study.open_ledger import OpenLedger, writing
+from fleet.study.parquet import bring_up_to_date
 from fleet.study.result import StudyResult
 from fleet.study.stop import Stop
 from fleet.study.version import environment, program_version
@@ -35,6 +39,7 @@ def run_jobs(
     progress: Progress = silent,
     say: Say = silent,
     retry: bool = False,
+    limit: float | None = LIMIT,
     meta: Mapping[str, Any] | None = None,
 ) -> StudyResult:
     """Run what the folder ``out`` does not hold yet, and write its tables.
@@ -52,6 +57,7 @@ def run_jobs(
         progress: Called with the counts when they change, and a few times a second.
         say: Called with a sentence about what is noticed on the way.
         retry: Run again what failed.
+        limit: What takes longer [s] is ended, and counts as failed; None: nothing is.
         meta: More to be kept about the study, of plain values.
 
     Raises:
@@ -61,23 +67,22 @@ def run_jobs(
     """
     folder = Path(out)
     with writing(folder) as ledger:
-        changed = ledger.plan(jobs, program_version())
+        clear_drafts(folder)
+        ledger.plan(jobs)
+        trust.remember(ledger.code())
         ledger.describe({"made_by": environment(), "folder": str(Path.cwd()), **(meta or {})})
         _tell_changes(ledger, say)
         keys = ledger.todo(retry=retry)
         if keys:
-            _run(ledger, keys, workers, scheduler, progress)
-        result = StudyResult(folder)
-        if keys or changed or not (folder / "runs.parquet").exists():
-            result.write()
-    return result
+            _run(ledger, keys, executor(workers, scheduler, len(keys), limit), progress)
+        bring_up_to_date(ledger, folder)
+    return StudyResult(folder)
 
 
 def _run(
     ledger: OpenLedger,
     keys: list[str],
-    workers: int | None,
-    scheduler: str | None,
+    runs: Executor,
     progress: Progress,
 ) -> None:
     """Run the jobs of these keys, to the end or until asked to stop."""
@@ -86,9 +91,11 @@ def _run(
     with ExitStack() as stack:
         stop = stack.enter_context(Stop())
         queue = Queue(keys, stop)
-        executor = stack.enter_context(closing(_executor(workers, scheduler, len(keys))))
+        stack.enter_context(closing(runs))
         progress(Counts(counts.total, done, failed))
-        for ended in executor.run(lambda: ledger.job(key) if (key := queue.take()) else None):
+        for ended in runs.run(lambda: ledger.job(key) if (key := queue.take()) else None):
+            if stale := next((o for o in ended if o.status == "stale"), None):
+                raise BrokenOff(stale.error)
             if outcomes := queue.settled(ended):
                 ledger.record(outcomes)
                 fine = sum(outcome.status == "done" for outcome in outcomes)
@@ -125,14 +132,15 @@ class Queue:
         return final
 
 
-def _executor(workers: int | None, scheduler: str | None, jobs: int) -> Executor:
+def executor(
+    workers: int | None, scheduler: str | None, jobs: int, limit: float | None
+) -> Executor:
+    """What runs so many jobs: processes of this machine, or a Dask cluster."""
     if scheduler is None:
-        local = LocalExecutor(workers)
-        local.workers = min(local.workers, jobs)
-        return local
+        return LocalExecutor(min(workers or usable_cores(), jobs), limit)
     from fleet.study.cluster import ClusterExecutor
 
-    return ClusterExecutor(scheduler)
+    return ClusterExecutor(scheduler, limit)
 
 
 def _tell_changes(ledger: OpenLedger, say: Say) -> None:

@@ -5,7 +5,7 @@ Every interval is one of confidence, 95 % unless said otherwise. Arrays are of o
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import warnings
 from math import inf, nan, sqrt
 from typing import NamedTuple
 
@@ -33,6 +33,7 @@ class Difference(NamedTuple):
     high: float
     effect: float  # Cohen's d of the pairs
     pairs: int
+    chance: float = nan  # p of as large a mean difference by chance, of Student's paired test
 
 
 class Survival(NamedTuple):
@@ -50,11 +51,21 @@ class Survival(NamedTuple):
         return float(self.times[over[0]]) if len(over) else inf
 
 
-def mean_interval(values: ArrayLike, confidence: float = CONFIDENCE) -> Interval:
-    """The mean and its t interval: exact for normal values, good for means of many others."""
+def mean_interval(
+    values: ArrayLike,
+    possible: tuple[float, float] = (-inf, inf),
+    confidence: float = CONFIDENCE,
+) -> Interval:
+    """The mean and its t interval: exact for normal values, good for means of many others.
+
+    The part of it that is ``possible`` is as likely to hold the mean as all of it. Of values that
+    are 0 or 1 each, where nothing else is possible, it is Wilson's.
+    """
     from scipy.special import stdtrit
 
     sample = np.asarray(values, float)
+    if possible == (0.0, 1.0) and len(sample) > 1 and np.isin(sample, (0.0, 1.0)).all():
+        return wilson_interval(int(sample.sum()), len(sample), confidence)
     if len(sample) == 0:
         return Interval(nan, nan, nan)
     mean = float(sample.mean())
@@ -62,7 +73,8 @@ def mean_interval(values: ArrayLike, confidence: float = CONFIDENCE) -> Interval
         return Interval(mean, nan, nan)
     error = float(sample.std(ddof=1)) / sqrt(len(sample))
     half = float(stdtrit(len(sample) - 1, 0.5 + 0.5 * confidence)) * error
-    return Interval(mean, mean - half, mean + half)
+    low, high = possible
+    return Interval(mean, max(mean - half, min(low, mean)), min(mean + half, max(high, mean)))
 
 
 def wilson_interval(successes: int, trials: int, confidence: float = CONFIDENCE) -> Interval:
@@ -106,7 +118,8 @@ def paired_difference(
         return Difference(nan, nan, nan, nan, 0)
     mean = float(differences.mean())
     low, high = _bca(differences, confidence, seed)
-    return Difference(mean, low, high, cohens_d(differences), len(differences))
+    effect = cohens_d(differences)
+    return Difference(mean, low, high, effect, len(differences), _chance(effect, len(differences)))
 
 
 def cohens_d(differences: ArrayLike) -> float:
@@ -124,14 +137,32 @@ def cohens_d(differences: ArrayLike) -> float:
     return mean / deviation
 
 
-def pooled_sd(groups: Iterable[ArrayLike]) -> float:
-    """The standard deviation within groups, each about its own mean, weighted by n - 1."""
-    squares, freedom = 0.0, 0
-    for group in groups:
-        sample = np.asarray(group, float)
-        squares += float(((sample - sample.mean()) ** 2).sum()) if len(sample) else 0.0
-        freedom += max(0, len(sample) - 1)
-    return sqrt(squares / freedom) if freedom else nan
+def holm(chances: ArrayLike) -> NDArray[np.float64]:
+    """Chances (p values) of several tests, raised so that 5 % is the risk of them all together.
+
+    Holm, Scand. J. Stat. 6(2):65, 1979. NaN: there is no such test, and it counts for nothing.
+    """
+    raw = np.asarray(chances, float)
+    found = np.full(len(raw), nan)
+    there = np.flatnonzero(np.isfinite(raw))
+    order = there[np.argsort(raw[there], kind="stable")]
+    raised = raw[order] * np.arange(len(order), 0, -1)
+    found[order] = np.minimum(np.maximum.accumulate(raised), 1.0)
+    return found
+
+
+def pairs_needed(deviation: float, least: float, power: float = 0.8) -> float:
+    """How many pairs show a mean difference of ``least``, with that chance, at 95 % confidence.
+
+    ``deviation`` is the standard deviation of the differences. By the normal approximation, Cohen
+    (1988), section 2.4, and two more pairs for the t distribution; inf: no number does.
+    """
+    from scipy.special import ndtri
+
+    if not least > 0.0:
+        return inf
+    quantiles = float(ndtri(0.5 + 0.5 * CONFIDENCE) + ndtri(power))
+    return float(np.ceil((quantiles * deviation / least) ** 2) + 2.0)
 
 
 def survival(
@@ -142,21 +173,59 @@ def survival(
     J. Am. Stat. Assoc. 53(282):457, 1958; the interval is Greenwood's on the scale of
     log(-log). Where ``ended`` is false the run was still going when it was last seen.
     """
-    from scipy.special import ndtri
+    from scipy.stats import CensoredData, ecdf
 
     times = np.asarray(lifetimes, float)
     over = np.ones(len(times), bool) if ended is None else np.asarray(ended, bool)
-    steps = np.unique(times[over])
-    at_risk = len(times) - np.searchsorted(np.sort(times), steps, side="left")
-    deaths = np.array([np.count_nonzero(times[over] == step) for step in steps])
-    share = np.cumprod(1.0 - deaths / at_risk, dtype=np.float64)
-    z = float(ndtri(0.5 + 0.5 * confidence))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        greenwood = np.cumsum(deaths / (at_risk * (at_risk - deaths)))
-        width = z * np.sqrt(greenwood) / np.abs(np.log(share))
-        low, high = share ** np.exp(width), share ** np.exp(-width)
+    if not over.any():
+        return Survival(*(np.empty(0) for _ in range(4)))
+    found = ecdf(CensoredData(uncensored=times[over], right=times[~over])).sf
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", RuntimeWarning)  # where the share is 0, told next
+        bounds = found.confidence_interval(confidence, method="log-log")
+    steps = np.isin(found.quantiles, times[over])
+    share, low, high = (curve.probabilities[steps] for curve in (found, bounds.low, bounds.high))
     inside = (share > 0.0) & (share < 1.0)
-    return Survival(steps, share, np.where(inside, low, share), np.where(inside, high, share))
+    return Survival(
+        found.quantiles[steps], share, np.where(inside, low, share), np.where(inside, high, share)
+    )
+
+
+def restricted(lifetimes: ArrayLike, ended: ArrayLike, horizon: float) -> NDArray[np.float64]:
+    """A value a run (n,) whose mean is the mean lifetime up to ``horizon``, the cut-off ones too.
+
+    Pseudo-observations of the area under Kaplan and Meier's curve: Andersen, Hansen and Klein,
+    Lifetime Data Anal. 10:335, 2004. Where nothing was cut off before the horizon they are the
+    lifetimes, those beyond it as long as it.
+    """
+    times, over = np.asarray(lifetimes, float), np.asarray(ended, bool)
+    if not np.any(~over & (times < horizon)):
+        return np.asarray(np.minimum(times, horizon))
+    count = len(times)
+    whole = _area(times, over, horizon)
+    without = np.array(
+        [_area(np.delete(times, i), np.delete(over, i), horizon) for i in range(count)]
+    )
+    values: NDArray[np.float64] = count * whole - (count - 1) * without
+    return values
+
+
+def _area(times: NDArray[np.float64], over: NDArray[np.bool_], horizon: float) -> float:
+    """The area under Kaplan and Meier's curve, from 0 to the horizon."""
+    steps, deaths = np.unique(times[over], return_counts=True)
+    at_risk = len(times) - np.searchsorted(np.sort(times), steps, side="left")
+    share = np.concatenate([[1.0], np.cumprod(1.0 - deaths / at_risk)])
+    edges = np.minimum(np.concatenate([[0.0], steps, [horizon]]), horizon)
+    return float((share * np.maximum(np.diff(edges), 0.0)).sum())
+
+
+def _chance(effect: float, pairs: int) -> float:
+    """The p of Student's paired test, two-sided."""
+    from scipy.special import stdtr
+
+    if pairs < 2:
+        return nan
+    return 1.0 if effect == 0.0 else float(2.0 * stdtr(pairs - 1, -abs(effect) * sqrt(pairs)))
 
 
 def _bca(sample: NDArray[np.float64], confidence: float, seed: int) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fleet.study.design import Study
+from fleet.study.local import LIMIT
 from fleet.study.result import StudyResult
 from fleet.study.runner import Progress, Say, run_jobs, silent
 from fleet.study.study_file import load_study, study_from
@@ -22,6 +23,7 @@ def sweep(
     progress: Progress = silent,
     say: Say = silent,
     retry: bool = False,
+    limit: float | None = LIMIT,
     command: str = "",
 ) -> StudyResult:
     """Run every combination of a study with every seed; go on where the folder stands.
@@ -44,6 +46,7 @@ def sweep(
         progress=progress,
         say=say,
         retry=retry,
+        limit=limit,
         meta={
             "study": asdict(described) | {"seeds": list(described.seeds)},
             "source": _source(study),

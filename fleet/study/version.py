@@ -13,6 +13,12 @@ import fleet
 BESIDE = ("cli", "experiments", "logs", "replay", "study")
 """In ``fleet``: what watches runs, and decides nothing in them."""
 
+IN_ROWS = ("fleet.study.play", "fleet.study.side_tables")
+"""In ``fleet.study``: what has a say in what is in a row, or in the tables beside it."""
+
+LIBRARIES = ("llvmlite", "numba", "numpy", "pillow", "pymunk", "scipy")
+"""What decides the last bits of a run besides: another version of one is another row."""
+
 
 @cache
 def program_version() -> str:
@@ -34,23 +40,27 @@ def program_version() -> str:
     return f"{fleet.__version__}+{digest.hexdigest()[:8]}"
 
 
-def environment() -> dict[str, str]:
-    """What a run's figures may depend on besides: versions, and the kind of machine."""
-    versions = {name: version(name) for name in ("numpy", "scipy", "numba", "pymunk")}
-    return {
-        "fleet": program_version(),
-        "python": platform.python_version(),
-        **versions,
-        "platform": f"{platform.system()} {platform.machine()}",
-    }
+def decides_nothing_more(module: str) -> bool:
+    """Whether a module, by its dotted name, need not count beside the program's version.
+
+    That covers it already, or it runs studies and has no say in what is in their rows.
+    """
+    parts = module.split(".")
+    if parts[0] != "fleet" or len(parts) < 3:
+        return parts[0] in {"fleet", "protocols", "worlds"}
+    return parts[1] not in BESIDE or (parts[1] == "study" and module not in IN_ROWS)
 
 
 @cache
-def source_digest(module: str) -> str:
-    """A hash of one module's source: a work function is a part of what its rows depend on."""
-    from importlib.util import find_spec
+def libraries() -> dict[str, str]:
+    """The versions that decide the last bits of a run: Python's, and :data:`LIBRARIES`'."""
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
-    spec = find_spec(module)
-    if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"no module named {module!r}")
-    return hashlib.sha256(Path(spec.origin).read_bytes()).hexdigest()[:16]
+
+def environment() -> dict[str, str]:
+    """What a run's figures may depend on besides: versions, and the kind of machine."""
+    return {
+        "fleet": program_version(),
+        **libraries(),
+        "platform": f"{platform.system()} {platform.machine()}",
+    }

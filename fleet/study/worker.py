@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -40,6 +41,7 @@ class Worker:
     def __init__(self, folder: str) -> None:
         self.connection, theirs = CONTEXT.Pipe()
         self.job: Job | None = None  # what it is at work on
+        self.since = 0.0  # when it was given that, by the monotonic clock [s]
         with _bare_start():
             self._process = CONTEXT.Process(target=serve, args=(theirs, folder))
             self._process.daemon = True
@@ -48,9 +50,16 @@ class Worker:
 
     def give(self, job: Job) -> None:
         """Start on a job. If the worker is dead, :meth:`answer` will say so."""
-        self.job = job
+        self.job, self.since = job, time.monotonic()
         with suppress(OSError):  # a dead worker's pipe
             self.connection.send(job)
+
+    def answers_within(self, seconds: float | None) -> bool:
+        """Wait so long for the outcome of the job, or for the worker's death; None: for ever."""
+        try:
+            return bool(self.connection.poll(seconds))
+        except OSError:
+            return True
 
     def answer(self) -> Outcome | None:
         """The outcome of the job, waited for; None: the worker died of it."""

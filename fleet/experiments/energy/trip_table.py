@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
+
+from fleet.study.frame import Frame
 
 FloatArray = NDArray[np.float64]
 
@@ -17,33 +17,9 @@ PARTS = ("detour", "ramps", "pivots", "waiting", "contact")
 """What a trip takes beyond Eq. (1) on the straight line."""
 
 
-@dataclass(frozen=True, slots=True)
-class TripTable:
-    """Columns (n,) of trips: the table that the work functions fill, with the labels."""
-
-    columns: Mapping[str, NDArray[Any]]
-
-    @classmethod
-    def of(cls, table: pa.Table) -> TripTable:
-        """From an Arrow table."""
-        return cls({name: table[name].to_numpy() for name in table.column_names})
-
-    def __len__(self) -> int:
-        return len(next(iter(self.columns.values()), ()))
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.columns[name]
-
-    def take(self, chosen: NDArray[Any]) -> TripTable:
-        """Those of this mask, or of these indices."""
-        return TripTable({name: column[chosen] for name, column in self.columns.items()})
-
-    def where(self, **same: Any) -> TripTable:
-        """Those whose columns have these values."""
-        chosen = np.ones(len(self), bool)
-        for name, value in same.items():
-            chosen &= self[name] == value
-        return self.take(chosen)
+@dataclass(frozen=True)
+class TripTable(Frame):
+    """Trips (n,): the table that the work functions fill, with the labels."""
 
     def arrived(self) -> TripTable:
         """Those that came to their site."""

@@ -52,14 +52,14 @@ def typical_bounds(world: str) -> Bounds:
 def reaches(runs: Results, limits: Bounds) -> Iterator[Outreach]:
     """What each protocol comes to in these runs of one world and one motion."""
     at_2sr = runs.where(search_radius=2.0)
-    all_knowing = _from_02(at_2sr.where(series="optimum")).values("lifetime").mean()
+    all_knowing = _from_02(at_2sr.where(series="optimum")).numbers("lifetime").mean()
     for protocol in PROTOCOLS:
         mine = at_2sr.where(series=protocol)
         longer = _from_02(mine)
-        mean, within = interval(longer.values("lifetime"))
+        mean, within = interval(longer.numbers("lifetime"))
         yield Outreach(
             protocol,
-            float(mine.where(radio_range=1.5).values("lifetime").mean()),
+            float(mine.where(radio_range=1.5).numbers("lifetime").mean()),
             mean,
             within,
             float(longer.per_event().mean()),
@@ -111,4 +111,4 @@ TITLES = {world: f"Beyond the paper: {title[4:]}" for world, title in WORLDS.ite
 
 
 def _from_02(runs: Results) -> Results:
-    return runs.chosen(runs.values("radio_range") > 1.75)
+    return runs.take(runs.numbers("radio_range") > 1.75)

@@ -46,7 +46,7 @@ def judged(agrees: bool | np.bool_) -> Verdict:
 def lifetime(results: Results, protocol: str, world: str, **more: object) -> float:
     """Mean lifetime [rounds] at 2SR, over all ranges unless one is given."""
     chosen = results.where(series=protocol, world=world, **{"search_radius": TWO_SR, **more})
-    return float(np.mean(chosen.values("lifetime"))) if len(chosen) else float("nan")
+    return float(np.mean(chosen.numbers("lifetime"))) if len(chosen) else float("nan")
 
 
 def per_event(results: Results, protocol: str, world: str, **more: object) -> float:
@@ -56,15 +56,15 @@ def per_event(results: Results, protocol: str, world: str, **more: object) -> fl
 
 
 def _search(results: Results) -> Iterator[Claim]:
-    found = results.where(series="gfgf1").values("closest_found").mean()
+    found = results.where(series="gfgf1").numbers("closest_found").mean()
     yield Claim(
         "Section 2.5", "GFGF1 finds the closest robot in almost 100 % of the routings",
         f"{found:.1%}", judged(found > 0.99),
         "more than 99 %",
     )  # fmt: skip
     by_radius = [
-        results.where(series="gfgf2", search_radius=sr).values("closest_found").mean()
-        for sr in results.where(series="gfgf2").distinct("search_radius")
+        results.where(series="gfgf2", search_radius=sr).numbers("closest_found").mean()
+        for sr in results.where(series="gfgf2").values("search_radius")
     ]
     yield Claim(
         "Section 2.5, Figure 8", "GFGF2 finds the closest robot in 55 to 90 % of the routings",
@@ -76,7 +76,7 @@ def _search(results: Results) -> Iterator[Claim]:
     for world in ("random", "random-hole"):
         ratios.append(per_event(results, "rfta1", world) / per_event(results, "gfgf2", world))
         pair = [
-            results.where(series=name, world=world, search_radius=TWO_SR).values("closest_found")
+            results.where(series=name, world=world, search_radius=TWO_SR).numbers("closest_found")
             for name in ("rfta1", "gfgf2")
         ]
         gains.append(pair[0].mean() - pair[1].mean())
@@ -92,7 +92,7 @@ def _search(results: Results) -> Iterator[Claim]:
 
 def _lifetimes(results: Results) -> Iterator[Claim]:
     rfta2 = {r: lifetime(results, "rfta2", "random", radio_range=r)
-             for r in results.where(series="rfta2").distinct("radio_range")}  # fmt: skip
+             for r in results.where(series="rfta2").values("radio_range")}  # fmt: skip
     longest, flat = max(rfta2.values()), [life for r, life in rfta2.items() if r > 2.0]
     yield Claim(
         "Figure 11", "RFTA2 at 2SR lives around 350 rounds at the longest",
@@ -109,7 +109,7 @@ def _lifetimes(results: Results) -> Iterator[Claim]:
     longest_ge = {
         world: max(
             lifetime(results, "rfta2ge", world, radio_range=r)
-            for r in results.where(series="rfta2ge").distinct("radio_range")
+            for r in results.where(series="rfta2ge").values("radio_range")
         )
         for world in ("random", "random-hole")
     }
@@ -131,8 +131,8 @@ def _lifetimes(results: Results) -> Iterator[Claim]:
     best = {
         world: {
             sr: results.where(series="rfta2", world=world, search_radius=sr)
-            .values("lifetime").mean()
-            for sr in results.where(series="rfta2").distinct("search_radius")
+            .numbers("lifetime").mean()
+            for sr in results.where(series="rfta2").values("search_radius")
         }
         for world in ("random", "random-hole")
     }  # fmt: skip
@@ -263,7 +263,7 @@ def _contradictions(results: Results) -> Iterator[Claim]:
     )  # fmt: skip
     reactions = {
         name: results.where(series=name, world="random-hole", search_radius=TWO_SR)
-        .values("reactions_per_robot").mean()
+        .numbers("reactions_per_robot").mean()
         for name in ("gfgf2a", "rfta2ge")
     }  # fmt: skip
     yield Claim(
@@ -272,7 +272,7 @@ def _contradictions(results: Results) -> Iterator[Claim]:
         f"{reactions['rfta2ge'] / reactions['gfgf2a']:.1f} times", "the paper contradicts itself",
     )  # fmt: skip
     per_robot = results.where(series="rfta2", search_radius=TWO_SR)
-    ratio = (per_robot.values("lifetime") / 100 / per_robot.values("reactions_per_robot")).mean()
+    ratio = (per_robot.numbers("lifetime") / 100 / per_robot.numbers("reactions_per_robot")).mean()
     yield Claim(
         "Tables 2 and 3", "lifetime over 100 times the reactions is 1.05 where it must be 1:"
         " each round is one reaction of one of 100 robots",

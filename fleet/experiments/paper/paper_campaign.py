@@ -62,4 +62,4 @@ def tasks(networks: int, motions: Iterable[str]) -> list[Job]:
 
 def results_of(rows: Iterable[Mapping[str, Any]]) -> Results:
     """The columns that the report needs, of all runs that are done."""
-    return Results.of({name: row[name] for name in COLUMNS} for row in rows)
+    return Results.of_rows({name: row[name] for name in COLUMNS} for row in rows)

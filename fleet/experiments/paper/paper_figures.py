@@ -45,9 +45,9 @@ class Quantity(NamedTuple):
 
 
 MESSAGES = Quantity("messages per round", Results.per_event)
-TOTAL = Quantity("messages per lifetime", lambda runs: runs.values("messages"))
-LIFETIME = Quantity("lifetime [rounds]", lambda runs: runs.values("lifetime"))
-CLOSEST = Quantity("closest robot found [%]", lambda runs: 100.0 * runs.values("closest_found"))
+TOTAL = Quantity("messages per lifetime", lambda runs: runs.numbers("messages"))
+LIFETIME = Quantity("lifetime [rounds]", lambda runs: runs.numbers("lifetime"))
+CLOSEST = Quantity("closest robot found [%]", lambda runs: 100.0 * runs.numbers("closest_found"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ def _by_radius(results: Results, series: str, quantity: Quantity) -> Figure:
     runs = results.where(series=series)
     curves = [
         (f"{radius:.0f}SR" if radius > 1.0 else "SR", colour, runs.where(search_radius=radius))
-        for radius, colour in zip(runs.distinct("search_radius"), RADIUS_COLOURS, strict=False)
+        for radius, colour in zip(runs.values("search_radius"), RADIUS_COLOURS, strict=False)
     ]
     return _panels(curves, quantity)
 
@@ -146,7 +146,7 @@ def _panels(curves: Sequence[tuple[str, str, Results]], quantity: Quantity) -> F
 def _curve(
     axes: Axes, runs: Results, quantity: Quantity, label: str, colour: str, marker: str
 ) -> None:
-    ranges = runs.distinct("radio_range")
+    ranges = runs.values("radio_range")
     if not ranges:
         return
     points = [interval(quantity.of(runs.where(radio_range=r))) for r in ranges]

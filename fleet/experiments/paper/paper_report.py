@@ -149,7 +149,7 @@ def _beyond(results: Results, motions: Sequence[str]) -> list[dict[str, Any]]:
 def _ge_note(runs: Results, motion: str) -> str:
     """The messages of RFTA2GE by the other ways to count its bids."""
     relayed, aggregated = (
-        runs.where(series=series, search_radius=2.0).values("messages_per_robot").mean()
+        runs.where(series=series, search_radius=2.0).numbers("messages_per_robot").mean()
         for series in ("rfta2ge", "rfta2ge-aggregated")
     )
     return (
@@ -189,7 +189,7 @@ def _provenance(results: Results, motions: Sequence[str]) -> str:
         f"{len(runs):,} runs in {motion} motion"
         for runs, motion in zip(lifetimes, motions, strict=True)
     )
-    networks = len(results.where(series="rfta2", radio_range=2.5).distinct("seed"))
+    networks = len(results.where(series="rfta2", radio_range=2.5).values("seed"))
     return f"{counts}; networks drawn for each range and topology: {networks}."
 
 

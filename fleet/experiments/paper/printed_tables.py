@@ -61,7 +61,7 @@ def compare(results: Results, world: str) -> list[Comparison]:
 
 def pooled(runs: Results, row: PrintedRow) -> MeanSd:
     """Mean and standard deviation over all runs."""
-    values = runs.values(row.key) * row.scale
+    values = runs.numbers(row.key) * row.scale
     if len(values) < 2:
         return MeanSd(float("nan"), float("nan"))
     return MeanSd(float(np.mean(values)), float(np.std(values, ddof=1)))

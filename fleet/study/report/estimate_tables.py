@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from fleet.study.report import text
+from fleet.study.report.csv_files import write_csv
 from fleet.study.report.estimates import ROBOTS_AT, Contrast, Coordinates, Curve, Energies, Mean
 from fleet.study.report.layout import Layout
 from fleet.study.report.quantities import name_of
@@ -93,7 +93,7 @@ def write_contrasts(path: Path, contrasts: Iterable[Contrast], layout: Layout) -
     """All paired differences, a row each."""
     _write(
         path, layout,
-        ["baseline", "measure", "difference", "low", "high", "cohens_d", "pairs"],
+        ["baseline", "measure", "difference", "low", "high", "cohens_d", "pairs", "p"],
         ((c.cell, [layout.baseline, c.measure, *c.difference]) for c in contrasts),
     )  # fmt: skip
 
@@ -126,15 +126,12 @@ def _write(
     path: Path, layout: Layout, head: list[str], rows: Iterable[tuple[Coordinates, list[Any]]]
 ) -> None:
     names = [*layout.facets, *(name for name in (layout.series, layout.x) if name is not None)]
-    draft = path.with_name(f".{path.name}")
-    with draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([*names, *head])
-        for cell, row in rows:
-            place = [*cell.facet, *([cell.series] if layout.series is not None else [])]
-            place += [cell.x] if layout.x is not None else []
-            writer.writerow([*place, *row])
-    draft.replace(path)
+    write_csv(path, [*names, *head], ([*_place(cell, layout), *row] for cell, row in rows))
+
+
+def _place(cell: Coordinates, layout: Layout) -> list[Any]:
+    place = [*cell.facet, *([cell.series] if layout.series is not None else [])]
+    return place + ([cell.x] if layout.x is not None else [])
 
 
 def _contrast(contrast: Contrast) -> TableCell:

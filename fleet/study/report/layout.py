@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from fleet.scenario.errors import bad, unknown
-from fleet.study.report.runs import Runs, is_numeric
+from fleet.study.frame import is_numeric
+from fleet.study.report.runs import Runs
 
 MOST_COLOURS = 8
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fleet.scenario.errors import bad, unknown
-from fleet.study.report.runs import Runs, is_numeric
+from fleet.study.frame import is_numeric
+from fleet.study.report.runs import Runs
 
 MEASURES = {
     "lifetime": "lifetime [rounds]",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,7 +12,11 @@ from typing import Any, TypeVar
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
+from fleet.scenario.errors import BadInput, bad
+from fleet.study.atomic import write_text
+from fleet.study.endings import BrokenOff
 from fleet.study.ledger import Counts, Ledger, reading
+from fleet.study.lock import sole
 from fleet.study.parquet import runs_table, side_table
 from fleet.study.report import estimate_figures as figures
 from fleet.study.report import estimate_tables as tables
@@ -49,22 +54,33 @@ class Section:
     csv: str
 
 
-def write_report(folder: Path) -> Path:
-    """Write ``report.html`` into the folder of a study, and its data into ``report/``.
+def write_report(folder: Path, out: Path | None = None) -> Path:
+    """Write ``report.html`` into the folder of a study, or ``out``, and its data into ``report/``.
 
     It tells what there is, also while the study goes on.
 
     Raises:
         BadInput: the folder holds no study, or the study's ``[report]`` asks for what is not
-            there.
+            there, or the page cannot be written.
     """
+    page = (out or folder) / "report.html"
+    try:
+        page.parent.mkdir(parents=True, exist_ok=True)
+        return _write(folder, page)
+    except OSError as error:
+        said = f"{str(error.filename or page)!r} cannot be written: {error.strerror or error}"
+        raise bad("", f"{said}; --out names another folder") from error
+    except BrokenOff as error:
+        raise bad("", str(error)) from error
+
+
+def _write(folder: Path, path: Path) -> Path:
     with reading(folder) as ledger:
         meta, counts, failures = ledger.meta(), ledger.counts(), ledger.failures()
         runs = runs_of(runs_table(ledger.rows()), ledger.labels())
         robots = _robots(ledger)
-    if counts.left or not (folder / "runs.parquet").exists():  # the sweep writes it at its end
-        StudyResult(folder).write()
-    beside = folder / "report"
+    _bring_up_to_date(folder)
+    beside = path.parent / "report"
     beside.mkdir(exist_ok=True)
     study = meta.get("study", {})
     sections = list(_sections(runs, robots, study.get("report", {}), beside)) if len(runs) else []
@@ -82,10 +98,14 @@ def write_report(folder: Path) -> Path:
         made_by=meta.get("made_by", {}),
         palette=list(zip(SERIES, SERIES_DARK, strict=True)),
     )
-    draft, path = folder / ".report.html", folder / "report.html"
-    draft.write_text(page, "utf-8")
-    draft.replace(path)
+    write_text(path, page)
     return path
+
+
+def _bring_up_to_date(folder: Path) -> None:
+    """Write the tables, unless a sweep is at work, which will, or nothing can be written here."""
+    with suppress(BadInput, OSError), sole(folder):
+        StudyResult(folder).write()
 
 
 def _sections(
@@ -190,7 +210,7 @@ def _drawn(
         name = f"{kind}-{place + 1}" if len(facets) > 1 else kind
         with in_style(name):
             svg = svg_of(draw([item for item in items if item.cell.facet == facet], plan))
-        (beside / f"{name}.svg").write_text(svg, "utf-8")
+        write_text(beside / f"{name}.svg", svg)
         rest = len(facets) - MOST_FACETS
         more = f" {rest} more combinations are in the CSV file." if rest > 0 else ""
         said = f"{caption}: {where}." if where else f"{caption}."

@@ -14,6 +14,12 @@ def deeds_are_found(monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parent)
 
 
+@pytest.fixture(autouse=True)
+def notes_of_their_own(monkeypatch, tmp_path_factory):
+    """Which code was swept with is noted in the user's home, but not by tests."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+
+
 @pytest.fixture
 def log(tmp_path):
     """Where the work functions note that they were called."""

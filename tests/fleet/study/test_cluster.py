@@ -154,7 +154,7 @@ def test_a_lost_scheduler_is_said_and_nothing_done_is_lost(own_cluster, tmp_path
 
 
 def test_workers_of_another_version_are_refused(cluster, tmp_path, make_tasks, monkeypatch):
-    for module in ("job", "runner", "cluster"):
+    for module in ("inputs", "runner", "cluster"):
         monkeypatch.setattr(f"fleet.study.{module}.program_version", lambda: "9.9+other")
     with pytest.raises(BrokenOff, match=r"a Dask worker runs .*, and the study 9\.9\+other"):
         run_jobs(make_tasks(3), tmp_path / "out", scheduler=cluster.address)

@@ -83,7 +83,7 @@ def test_failed_runs_are_exit_1_and_named(tmp_path, file):
 
 
 def test_a_folder_at_work_is_exit_2(tmp_path, file):
-    from fleet.study.ledger import writing
+    from fleet.study.open_ledger import writing
 
     with writing(tmp_path / "out"):
         done = fleet("sweep", file, "--out", tmp_path / "out")
@@ -180,7 +180,7 @@ def test_replay_notices_a_run_that_differs(swept, monkeypatch):
     found = kept.kept_run(swept, key)
     assert found.row is not None
     found.row["messages"] += 1
-    monkeypatch.setattr(kept, "kept_run", lambda *_: found)
+    monkeypatch.setattr(kept, "kept_run", lambda *_, **__: found)
     done = fleet("replay", swept, key)
     assert done.exit_code == 1
     assert f"messages was {found.row['messages']}, is {found.row['messages'] - 1}" in done.stderr

@@ -128,7 +128,7 @@ def test_differences_are_paired_by_seed(folder):
             ]
 
         expected = paired_difference(of("gfgf2a"), of("rfta2"))
-        found = [float(row[n]) for n in ("difference", "low", "high", "cohens_d", "pairs")]
+        found = [float(row[n]) for n in ("difference", "low", "high", "cohens_d", "pairs", "p")]
         assert found == pytest.approx(list(expected), nan_ok=True)
 
 
@@ -258,9 +258,9 @@ def test_a_key_that_not_every_cell_sets_is_named_where_it_is_set(tmp_path):
     assert {row["case"] for row in read(tmp_path / "report" / "means.csv")} == {"few", "usual"}
 
 
-def test_runs_that_reached_their_limit_of_rounds_have_not_ended():
-    runs = some_runs(scenario=['{"rounds": null}', '{"rounds": 2}', '{"rounds": 9}'] * 2)
-    np.testing.assert_array_equal(ended(runs), [True, False, True, True, False, True])
+def test_runs_that_were_cut_off_have_not_ended():
+    table = pa.table({"censored": [False, True, False]})
+    np.testing.assert_array_equal(ended(runs_of(table, [])), [True, False, True])
 
 
 def test_the_command_says_where_the_page_is(folder):

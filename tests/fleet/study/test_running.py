@@ -7,13 +7,17 @@ import signal
 import sqlite3
 import threading
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
 from fleet.scenario.errors import BadInput
 from fleet.study import Job, StudyResult, run_jobs
+from fleet.study.job import Outcome
 from fleet.study.ledger import NAME, reading
+from fleet.study.open_ledger import writing
+from fleet.study.version import program_version
 
 
 def numbers(result):
@@ -52,13 +56,23 @@ def test_more_tasks_are_added_and_others_put_aside(tmp_path, make_tasks, calls):
 
 def test_another_version_of_the_program_runs_everything_again(tmp_path, make_tasks, monkeypatch):
     said = []
-    run_jobs(make_tasks(3), tmp_path / "out", workers=1)
-    for module in ("job", "runner"):
-        monkeypatch.setattr(f"fleet.study.{module}.program_version", lambda: "9.9+changed")
+    with monkeypatch.context() as patched, writing(tmp_path / "out") as ledger:
+        patched.setattr("fleet.study.inputs.program_version", lambda: "0.0+before")
+        jobs = make_tasks(3)
+        ledger.plan(jobs)
+        ledger.record(Outcome(job.key, "done", '{"n": 1}', {}, "", 1, 0.1) for job in jobs)
+        assert {row["version"] for row in ledger.rows()} == {"0.0+before"}
     result = run_jobs(make_tasks(3), tmp_path / "out", workers=1, say=said.append)
-    assert {row["version"] for row in result.rows()} == {"9.9+changed"}
+    assert {row["version"] for row in result.rows()} == {program_version()}
+    assert numbers(result) == [0, 1, 2]
     assert said[0].startswith("the program has changed: 3 runs are of another version; kept aside")
     assert len(said) == 1
+
+
+def test_a_row_says_which_libraries_it_was_made_with(tmp_path, make_tasks):
+    (row,) = run_jobs(make_tasks(1), tmp_path / "out", workers=1).rows()
+    for name in ("numpy", "numba", "scipy", "pymunk"):
+        assert f"{name} {version(name)}" in row["libraries"].split(", ")
 
 
 def test_one_run_may_stand_in_two_cells_and_is_run_once(tmp_path, calls, log):
@@ -215,7 +229,7 @@ def test_a_ledger_of_another_format_is_left_alone(tmp_path, make_tasks):
     database = sqlite3.connect(tmp_path / "out" / NAME)
     database.execute("PRAGMA user_version = 7")
     database.close()
-    with pytest.raises(BadInput, match="is of format 7; expected 1"):
+    with pytest.raises(BadInput, match="is of format 7; expected 2"):
         run_jobs(make_tasks(1), tmp_path / "out")
 
 

@@ -49,7 +49,7 @@ def as_printed():
 
 
 def test_the_papers_own_numbers_are_no_distance_from_the_papers():
-    results = Results.of(as_printed())
+    results = Results.of_rows(as_printed())
     for world in WORLDS:
         found = compare(results, world)
         assert len(found) == len(ROWS) * len(PROTOCOLS)
@@ -63,7 +63,7 @@ def test_the_papers_own_numbers_are_no_distance_from_the_papers():
 def test_a_distance_is_told_in_pooled_standard_deviations():
     paper = TABLES["random"]["rfta2"]["lifetime"]
     rows = [row(lifetime=paper.mean + paper.sd + d * paper.sd / np.sqrt(2.0)) for d in (-1, 1)]
-    cells = compare(Results.of(rows), "random")
+    cells = compare(Results.of_rows(rows), "random")
     (found,) = [c for c in cells if c.row.key == "lifetime" and c.protocol == "rfta2"]
     assert found.difference == pytest.approx(1.0)
     (none,) = [c for c in cells if c.row.key == "lifetime" and c.protocol == "gfgf2a"]
@@ -72,7 +72,7 @@ def test_a_distance_is_told_in_pooled_standard_deviations():
 
 def test_values_that_cannot_be_are_named():
     assert IMPOSSIBLE
-    cells = [cell for world in WORLDS for cell in compare(Results.of(as_printed()), world)]
+    cells = [cell for world in WORLDS for cell in compare(Results.of_rows(as_printed()), world)]
     assert sum(bool(cell.impossible) for cell in cells) == len(IMPOSSIBLE)
 
 
@@ -89,7 +89,7 @@ class TestClaims:
             for sr in SEARCH_RADII
             for seed in range(2)
         ]
-        (claim,) = [c for c in claims(Results.of(rows)) if says in c.says]
+        (claim,) = [c for c in claims(Results.of_rows(rows)) if says in c.says]
         return claim.verdict, claim.measured
 
     def test_a_baseline_that_lives_as_told(self):
@@ -124,7 +124,9 @@ def test_shares_of_ceiling_and_bounds():
         for r in (1.5, 2.0, 2.5)
         for seed in (1, 2)
     ]  # fmt: skip
-    found = {reach.protocol: reach for reach in reaches(Results.of(rows), Bounds(1000.0, 1200))}
+    found = {
+        reach.protocol: reach for reach in reaches(Results.of_rows(rows), Bounds(1000.0, 1200))
+    }
     best = found["rfta3"]
     assert (best.short, best.longer, best.within, best.messages) == (600, 600, 0, 8)
     assert (best.all_knowing, best.nearest, best.foresight) == (0.75, 0.6, 0.5)
