@@ -10,10 +10,10 @@ from math import pi
 import numpy as np
 
 from fleet.agenda import Agenda
+from fleet.catalogue import look_up
 from fleet.faults import Blackout
 from fleet.fleet import Fleet, RunLabels
 from fleet.handler import Handler
-from fleet.motion.motions import MOTIONS
 from fleet.observer import Audience, Observer
 from fleet.placement import start
 from fleet.power import Battery
@@ -68,7 +68,7 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     world = make_world(scenario.world)
     audience = Audience(observers)
     motion = make_motion(scenario.motion, scenario.robot, world.arena, audience.sample_interval)
-    solid = MOTIONS[scenario.motion.name].solid
+    solid = look_up("motion", scenario.motion.name, "motion").solid
     ground = ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
     advised = advice(scenario, world.arena)
     for said in filter(None, (*world.notices, ground.notice(), *advised)):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
-from typing import Any, NamedTuple, Protocol
+from typing import Protocol
 
 from fleet.tasks import Task
 from worlds.events import Occurrence
@@ -240,16 +239,3 @@ class ByTheClock:
     def carried_enough(self, task: Task) -> bool:
         """Whether it has been offered as often as may be."""
         return task.offers >= self._options.offers
-
-
-class Entry(NamedTuple):
-    """A way for time to go, and where it comes from."""
-
-    function: Callable[..., Any]
-    source: str
-
-
-TIMINGS: dict[str, Entry] = {
-    "rounds": Entry(Rounds, "Stanulovic et al., Sensors 21(18):6149, 2021, section 5"),
-    "stream": Entry(Stream, "Poisson by default; see the events"),
-}

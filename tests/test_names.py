@@ -12,7 +12,6 @@ PACKAGES = ("fleet", "protocols", "worlds")
 # Names that are still used twice. These lists only ever get shorter; at the end they are empty.
 FILES_TO_RENAME: set[str] = set()
 CLASSES_TO_RENAME: set[str] = {
-    "Entry",
     "Handler",
     "Robot",
 }

@@ -32,7 +32,7 @@ class World:
     notices: tuple[str, ...] = ()  # what its author may want to know
 
 
-class Entry(NamedTuple):
+class WorldEntry(NamedTuple):
     """A function that makes a world from its parameters, and where it comes from."""
 
     function: Callable[..., World]
@@ -204,14 +204,14 @@ def _check_inside(
         )
 
 
-WORLDS: dict[str, Entry] = {
-    "map": Entry(occupancy_map, "a file of the user's; wiki.ros.org/map_server"),
-    "pit": Entry(pit, f"{PAPER}; its hole as an obstacle"),
-    "placed": Entry(placed, "a file of the user's"),
-    "random": Entry(random, PAPER),
-    "random-hole": Entry(random_hole, PAPER),
-    "rooms": Entry(rooms, "an office floor"),
-    "warehouse": Entry(warehouse, "a storage floor"),
+WORLDS: dict[str, WorldEntry] = {
+    "map": WorldEntry(occupancy_map, "a file of the user's; wiki.ros.org/map_server"),
+    "pit": WorldEntry(pit, f"{PAPER}; its hole as an obstacle"),
+    "placed": WorldEntry(placed, "a file of the user's"),
+    "random": WorldEntry(random, PAPER),
+    "random-hole": WorldEntry(random_hole, PAPER),
+    "rooms": WorldEntry(rooms, "an office floor"),
+    "warehouse": WorldEntry(warehouse, "a storage floor"),
 }
 
 EVENTS: dict[str, EventsEntry] = {

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
-from typing import Any
 
 import click
 
@@ -16,18 +14,12 @@ def command() -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from fleet.modes import TIMINGS
-    from fleet.motion.motions import MOTIONS
-    from fleet.radio.catalogue import RADIOS
-    from protocols.catalogue import METRICS, PROTOCOLS
-    from worlds.catalogue import EVENTS, WORLDS
+    from fleet.catalogue import CATALOGUES
 
     console = Console()
-    catalogues: dict[str, Mapping[str, Any]] = {
-        "protocol": PROTOCOLS, "metric": METRICS, "world": WORLDS, "motion": MOTIONS,
-        "time": TIMINGS, "events": EVENTS, "radio": RADIOS,
-    }  # fmt: skip
-    for kind, catalogue in catalogues.items():
+    for kind, catalogue in CATALOGUES.items():
+        if kind == "preset":
+            continue  # a robot has no docstring
         table = Table(kind, "what it does", "source", title_justify="left", expand=True)
         table.columns[0].no_wrap = True
         for name, entry in sorted(catalogue.items()):

@@ -14,12 +14,12 @@ from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
+from fleet.catalogue import look_up
 from fleet.scenario.delimited import numbers
 from fleet.scenario.errors import BadInput, bad, or_list, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.model import Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
-from protocols.catalogue import METRICS
 from protocols.metrics import Metric
 from worlds.occupancy import OccupancyGrid
 from worlds.shapes import EventTable, LinkTable, PlaceTable
@@ -133,10 +133,8 @@ def metric(value: Any, key: str) -> Metric:
         raise bad(key, f"is {shown(value)}; expected the name of a metric, or a table with one")
     if looks_like_file(name):
         function: Any = load_object(name, key)
-    elif name in METRICS:
-        function = METRICS[name].function
     else:
-        raise bad(key, unknown("metric", name, METRICS))
+        function = look_up("metric", name, key).function
     if inspect.isclass(function):
         make: Any = function
         made: Metric = build(make, table, key)

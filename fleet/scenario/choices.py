@@ -6,23 +6,21 @@ from collections.abc import Callable, Iterator, Mapping
 from inspect import isclass
 from typing import Any
 
+from fleet.catalogue import look_up, parameters_of, takers
 from fleet.faults import Faults
-from fleet.modes import TIMINGS, Rounds, Stream
+from fleet.modes import Rounds, Stream
 from fleet.motion import Motion
-from fleet.motion.motions import MOTIONS
 from fleet.power import ExtraPower, PowerModel
-from fleet.radio.catalogue import RADIOS
 from fleet.radio.hearsay import RadioParameters
 from fleet.robot import RobotSpec
 from fleet.scenario.binding import bind, build, field_types, keywords
-from fleet.scenario.errors import BadInput, bad, shown, unknown
+from fleet.scenario.errors import BadInput, bad, shown
 from fleet.scenario.model import Choice, Scenario, plain
 from fleet.scenario.plugins import load_object, looks_like_file
 from fleet.scenario.rehearsal import guarded, rehearse
-from protocols.catalogue import PROTOCOLS
 from protocols.messages import ProtocolFunction
 from worlds.arena import Arena
-from worlds.catalogue import EVENTS, WORLDS, World
+from worlds.catalogue import World
 from worlds.events import Occurrence
 from worlds.sensors import SensorSpec
 
@@ -43,7 +41,7 @@ def check(scenario: Scenario) -> None:
         BadInput: something of a name does not exist, or a parameter does not fit.
     """
     problems: list[tuple[str, str]] = []
-    for look_up in (
+    for bound in (
         lambda: bind_protocol(scenario),
         lambda: make_world(scenario.world),
         lambda: motion_options(scenario.motion),
@@ -52,7 +50,7 @@ def check(scenario: Scenario) -> None:
         lambda: bind_events(scenario.events),
     ):
         try:
-            look_up()
+            bound()
         except BadInput as error:
             problems.extend(error.problems)
     if problems:
@@ -61,27 +59,18 @@ def check(scenario: Scenario) -> None:
 
 def functions_of(scenario: Scenario) -> dict[str, Callable[..., Any]]:
     """What the parameters of each choice are given to, by the scenario's key."""
+    kinds = ("world", "motion", "time", "radio", "events")
+    found = {kind: look_up(kind, getattr(scenario, kind).name, kind) for kind in kinds}
     return {
         "protocol": protocol_function(scenario.protocol.name),
-        "world": WORLDS[scenario.world.name].function,
-        "motion": MOTIONS[scenario.motion.name].options,
-        "time": TIMINGS[scenario.time.name].function,
-        "radio": RADIOS[scenario.radio.name].function,
-        "events": EVENTS[scenario.events.name].function,
+        **{kind: parameters_of(entry) for kind, entry in found.items()},
     }
 
 
 def homes(name: str) -> Iterator[str]:
     """The tables of a scenario that have a key of that name, as ``table.name``."""
-    for table, functions in (
-        ("protocol", _functions(PROTOCOLS)),
-        ("world", _functions(WORLDS)),
-        ("motion", _options()),
-        ("time", _functions(TIMINGS)),
-        ("radio", _functions(RADIOS)),
-        ("events", _functions(EVENTS)),
-    ):
-        if any(name in keywords(function) for function in functions.values()):
+    for table in ("protocol", "world", "motion", "time", "radio", "events"):
+        if any(name in keywords(function) for function in takers(table).values()):
             yield f"{table}.{name}"
     for table, kind in TABLES.items():
         if name in field_types(kind):
@@ -108,7 +97,7 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
     elif "search_radius" in accepted:
         parameters["search_radius"] = scenario.search_radius
     made: ProtocolFunction = (build if isclass(function) else bind)(
-        function, parameters, "protocol", _functions(PROTOCOLS)
+        function, parameters, "protocol", takers("protocol")
     )
     made = guarded(made, name, plain(scenario.protocol))
     rehearse(made, name)
@@ -123,17 +112,13 @@ def protocol_function(name: str) -> Any:
     """
     if looks_like_file(name):
         return load_object(name, "protocol")
-    if name not in PROTOCOLS:
-        raise bad("protocol", unknown("protocol", name, PROTOCOLS))
-    return PROTOCOLS[name].function
+    return look_up("protocol", name, "protocol").function
 
 
-def _functions(catalogue: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
-    return {name: entry.function for name, entry in catalogue.items()}
-
-
-def _options() -> dict[str, Callable[..., Any]]:
-    return {name: entry.options for name, entry in MOTIONS.items()}
+def _made(kind: str, choice: Choice) -> Any:
+    """What the parameters of a choice come to."""
+    taker = parameters_of(look_up(kind, choice.name, kind))
+    return build(taker, choice.parameters, kind, takers(kind))
 
 
 def make_world(choice: Choice) -> World:
@@ -142,9 +127,8 @@ def make_world(choice: Choice) -> World:
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
-    if choice.name not in WORLDS:
-        raise bad("world", unknown("world", choice.name, WORLDS))
-    return build(WORLDS[choice.name].function, choice.parameters, "world", _functions(WORLDS))
+    made: World = _made("world", choice)
+    return made
 
 
 def make_motion(
@@ -156,10 +140,14 @@ def make_motion(
         BadInput: there is none of that name, or a parameter does not fit.
     """
     options = motion_options(choice)
+    motion: Motion
     try:
-        return MOTIONS[choice.name].function(spec, arena, options, sample_interval)
+        motion = look_up("motion", choice.name, "motion").function(
+            spec, arena, options, sample_interval
+        )
     except ValueError as error:
         raise bad("motion", str(error)) from error
+    return motion
 
 
 def motion_options(choice: Choice) -> Any:
@@ -168,14 +156,7 @@ def motion_options(choice: Choice) -> Any:
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
-    if choice.name not in MOTIONS:
-        raise bad("motion", unknown("motion", choice.name, MOTIONS))
-    return build(
-        MOTIONS[choice.name].options,
-        choice.parameters,
-        "motion",
-        _options(),
-    )
+    return _made("motion", choice)
 
 
 def make_timing(choice: Choice) -> Rounds | Stream:
@@ -184,11 +165,7 @@ def make_timing(choice: Choice) -> Rounds | Stream:
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
-    if choice.name not in TIMINGS:
-        raise bad("time", unknown("time", choice.name, TIMINGS))
-    timing: Rounds | Stream = build(
-        TIMINGS[choice.name].function, choice.parameters, "time", _functions(TIMINGS)
-    )
+    timing: Rounds | Stream = _made("time", choice)
     return timing
 
 
@@ -198,11 +175,7 @@ def radio_spec(choice: Choice) -> RadioParameters | None:
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
-    if choice.name not in RADIOS:
-        raise bad("radio", unknown("radio", choice.name, RADIOS))
-    spec: RadioParameters | None = build(
-        RADIOS[choice.name].function, choice.parameters, "radio", _functions(RADIOS)
-    )
+    spec: RadioParameters | None = _made("radio", choice)
     return spec
 
 
@@ -212,6 +185,7 @@ def bind_events(choice: Choice) -> Callable[..., Iterator[Occurrence]]:
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
     """
-    if choice.name not in EVENTS:
-        raise bad("events", unknown("events", choice.name, EVENTS))
-    return bind(EVENTS[choice.name].function, choice.parameters, "events", _functions(EVENTS))
+    function: Callable[..., Iterator[Occurrence]] = look_up(
+        "events", choice.name, "events"
+    ).function
+    return bind(function, choice.parameters, "events", takers("events"))

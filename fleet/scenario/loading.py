@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fleet.robot import PRESETS
+from fleet.catalogue import known_name, look_up
 from fleet.scenario.binding import convert, unusable
 from fleet.scenario.choices import check, homes
 from fleet.scenario.errors import BadInput, bad, or_list, shortened, shown, unknown
@@ -122,6 +122,7 @@ def _choice(value: Any, key: str) -> dict[str, Any]:
     name = parameters.pop("name", getattr(Scenario(), key).name)
     if not isinstance(name, str) or not name:
         raise bad(f"{key}.name", f"is {shown(name)}; expected a name from `fleet list`")
+    name = known_name(key, name) or name  # one that is not known may be a file of the user's
     return {"name": name, "parameters": parameters}
 
 
@@ -133,9 +134,7 @@ def _robot(value: Any) -> dict[str, Any]:
     preset = table.pop("preset", "small")
     if not isinstance(preset, str):
         raise bad("robot.preset", f"is {shown(preset)}; expected the name of a preset")
-    if preset not in PRESETS:
-        raise bad("robot.preset", unknown("preset", preset, PRESETS))
-    return merged(plain(PRESETS[preset]), table)
+    return merged(plain(look_up("preset", preset, "robot.preset")), table)
 
 
 def _located(

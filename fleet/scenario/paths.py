@@ -8,8 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fleet.radio.catalogue import RADIOS
-from worlds.catalogue import EVENTS, WORLDS
+from fleet.catalogue import CATALOGUES
 from worlds.occupancy import OccupancyGrid
 from worlds.shapes import EventTable, LinkTable, PlaceTable
 
@@ -24,12 +23,10 @@ def path_keys() -> frozenset[str]:
     """The dotted scenario keys whose text is the path of a file, whatever it is called."""
     return frozenset(
         f"{choice}.{parameter.name}"
-        for choice, catalogue in (("world", WORLDS), ("events", EVENTS), ("radio", RADIOS))
-        for entry in catalogue.values()
+        for choice in ("world", "events", "radio")
+        for entry in CATALOGUES[choice].values()
         for parameter in inspect.signature(entry.function, eval_str=True).parameters.values()
-        if parameter.kind is parameter.KEYWORD_ONLY
-        and parameter.annotation
-        in (PlaceTable, PlaceTable | None, EventTable, LinkTable, OccupancyGrid)
+        if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation in FILES
     )
 
 
