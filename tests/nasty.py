@@ -12,9 +12,10 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
+from fleet.radio.catalogue import RADIOS
+
 from fleet.modes import TIMINGS
 from fleet.motion.motions import MOTIONS
-from fleet.radio.catalogue import RADIOS
 from fleet.scenario.binding import field_types, keywords
 from fleet.scenario.choices import TABLES as PLAIN_TABLES
 from fleet.scenario.model import Scenario
