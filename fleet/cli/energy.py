@@ -101,28 +101,29 @@ def _judge_logs(paths: tuple[Path, ...], out: Path, told: dict[str, Any]) -> Non
     from fleet.logs.judging import judge
     from fleet.logs.log_report import write
 
-    grounds = gather(paths, _settings(told))
-    for ground in grounds:
-        judgement = judge(ground)
-        folder = out / ground.name if len(grounds) > 1 else out
+    judgements = [judge(ground) for ground in gather(paths, _settings(told))]
+    for judgement in judgements:
+        folder = out / judgement.ground.name if len(judgements) > 1 else out
         page = write(judgement, folder, this_command())
         _print_judgement(judgement)
         click.echo(f"Report: {page}\n")
-    if len(grounds) > 1:
+    if len(judgements) > 1:
         from fleet.logs.comparing import slopes_sentence
 
-        click.echo(slopes_sentence([judge(ground) for ground in grounds]))
+        click.echo(slopes_sentence(judgements))
 
 
 def _settings(told: dict[str, Any]) -> LogSettings:
     from fleet.logs.asking import LogSettings, motor_constants
-    from fleet.scenario.errors import bad
+    from fleet.scenario.errors import BadInput, bad
 
     given = {name: value for name, value in told.items() if value is not None}
     if "motor" in given:
         given["motor"] = motor_constants(given["motor"])
     try:
         return LogSettings(**given)
+    except BadInput:
+        raise
     except ValueError as error:
         raise bad("--log", str(error)) from error
 

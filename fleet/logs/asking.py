@@ -114,6 +114,8 @@ def settings_from(table: Mapping[str, Any]) -> LogSettings:
         values[key] = _value(key, value)
     try:
         return LogSettings(**values)
+    except BadInput:
+        raise
     except ValueError as error:
         raise bad("", str(error)) from error
 

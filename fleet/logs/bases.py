@@ -8,14 +8,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.logs.fitting import Law, MotionLaw, Sums, identified, nested, sums_of
+from fleet.logs.fitting import Law, Mask, MotionLaw, Sums, identified, nested, sums_of
 from fleet.logs.forces import Chassis, linearised
 from fleet.logs.grounds import LoggedRun, LogGround
-from fleet.logs.sampling import TERMS, Pieces, Rates, Samples, samples_of, trips, windows
+from fleet.logs.sampling import (
+    STILL_SPEED,
+    TERMS,
+    Pieces,
+    Rates,
+    Samples,
+    samples_of,
+    trips,
+    windows,
+)  # fmt: skip
+from fleet.scenario.errors import bad
 
 Floats = NDArray[np.float64]
 
-_ROUNDS = 20
+_ROUNDS = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,16 +45,19 @@ class LawFamily:
         """The law with all terms that can be told apart."""
         return self.laws[-1]
 
-    def law(self, terms: Law, left_out: int | None = None) -> MotionLaw:
-        """The law of these terms, fitted on all runs but one."""
-        if left_out is None:
-            return self.sums.law(terms)
-        return self.sums.law(terms, (np.array(self.sums.runs) != left_out).astype(float))
+    def law(self, terms: Law, among: Mask | None = None) -> MotionLaw:
+        """The law of these terms, fitted on all runs, or on those ``among`` (r,) them."""
+        return self.sums.law(terms, None if among is None else among.astype(float))
 
 
 def by_motion(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> LawFamily:
     """Laws that are linear in metres, seconds, radians, seconds of turning, and v²."""
     samples = samples_of(ground, lag=lag, over=over)
+    if not len(samples.step):
+        raise bad(
+            "--log", f"{ground.name}: it never drives; expected speeds of more than"
+            f" {STILL_SPEED:g} m/s",
+        )  # fmt: skip
     cut = windows(samples)
     terms, why = identified(cut, cut, turns=ground.turns)
     return LawFamily(
@@ -74,7 +87,7 @@ def by_forces(
             best, least = parameters, error
         law = sums_of(cut).law(terms)
         new = np.array([law[term] for term in TERMS])
-        done = np.abs(new - parameters).max() <= 1e-9 * max(1.0, float(np.abs(new).max()))
+        done = np.abs(new - parameters).max() <= 1e-6 * max(1.0, float(np.abs(new).max()))
         parameters = new if error <= least else 0.5 * (best + new)
         if done:
             break

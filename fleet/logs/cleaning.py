@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.logs.asking import LogSettings
-from fleet.logs.clocks import ascending, seconds
+from fleet.logs.clocks import ascending, seconds, unfolded
 from fleet.logs.electrics import power_of
 from fleet.logs.grounds import LoggedRun
 from fleet.logs.signals import Signals
@@ -44,8 +44,11 @@ def runs_of(
     """
     notes = list(signals.notes)
     for part in (signals.motion, signals.power, signals.gyro):
-        if "time" in part and not signals.in_seconds:
-            part["time"], note = seconds(part["time"], signals.name)
+        if "time" in part:
+            note = ""
+            if not signals.in_seconds:
+                part["time"], note = seconds(part["time"], signals.name)
+            part["time"] = unfolded(part["time"])
             notes += [note] if note and note not in notes else []
     if not signals.motion:
         raise bad(

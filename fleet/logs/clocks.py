@@ -41,11 +41,31 @@ def seconds(time: Floats, source: str) -> tuple[Floats, str]:
     return time * factor, f"times taken as {unit}: {step:g} from sample to sample"
 
 
+def unfolded(time: Floats) -> Floats:
+    """Times of rows that go on, after a gap, where they went backward.
+
+    So that no two rows have one time, and those of a stretch are of no other.
+    """
+    finite = np.flatnonzero(np.isfinite(time))
+    steps = np.diff(time[finite])
+    back = steps < 0.0
+    if not back.any():
+        return time
+    typical = float(np.median(np.abs(steps)))
+    shift = np.cumsum(np.where(back, 3.0 * max(LONGEST_GAP, _STEPS * typical) - steps, 0.0))
+    later = time.copy()
+    later[finite[1:]] += shift
+    return later
+
+
 def ascending(time: Floats, source: str) -> tuple[list[NDArray[np.intp]], list[str]]:
     """The samples of each stretch in which time goes on without gaps, and what was found.
 
-    A time that repeats the one before is left out; a stretch ends where time goes backward, or
-    where nothing is logged for more than a second and more than five steps.
+    Times are :func:`unfolded`. One that repeats the one before is left out; a stretch ends where
+    nothing is logged for more than a second and more than five steps.
+
+    Raises:
+        BadInput: all times are the same.
     """
     keep = np.flatnonzero(np.isfinite(time))
     notes = []
@@ -61,13 +81,13 @@ def ascending(time: Floats, source: str) -> tuple[list[NDArray[np.intp]], list[s
     if not len(forward):
         raise bad("--log", f"{source}: its times never go on; expected times that ascend")
     longest = max(LONGEST_GAP, _STEPS * float(np.median(forward)))
-    back, gap = steps < 0.0, steps > longest
-    for cut, what in ((back, "backward times"), (gap, f"gaps of more than {longest:.3g} s")):
-        if cut.any():
-            notes.append(
-                f"cut at {np.count_nonzero(cut)} {what}: nothing is integrated across them"
-            )
-    return np.split(keep, np.flatnonzero(back | gap) + 1), notes
+    gap = steps > longest
+    if gap.any():
+        notes.append(
+            f"cut at {np.count_nonzero(gap)} places where time goes backward, or nothing is logged for"
+            f" more than {longest:.3g} s: nothing is integrated across them"
+        )
+    return np.split(keep, np.flatnonzero(gap) + 1), notes
 
 
 _LONGEST_HOLD = 3.0  # [s]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fleet.logs.asking import LogSettings, MotorConstants
 from fleet.logs.clocks import genuine
-from fleet.logs.signals import Signals
+from fleet.logs.signals import SAYS_NO_POWER, Signals
 from fleet.scenario.errors import bad
 
 Floats = NDArray[np.float64]
@@ -52,10 +52,10 @@ def power_of(
         return _finite(signals, power, notes, drive_only=True)
     if "energy" in logged:
         return _from_energy(logged["time"], logged["energy"], signals.name)
-    raise bad("--log", f"{signals.name}: {_missing(logged, empty)}")
+    raise bad("--log", f"{signals.name}: {_missing(logged, empty, signals.notes)}")
 
 
-def _missing(logged: Mapping[str, Floats], empty: list[str]) -> str:
+def _missing(logged: Mapping[str, Floats], empty: list[str], notes: Sequence[str]) -> str:
     """What to do about a log without power."""
     if empty:
         names = " and ".join(repr(name) for name in empty)
@@ -68,9 +68,10 @@ def _missing(logged: Mapping[str, Floats], empty: list[str]) -> str:
             "holds a voltage and no current, which makes no power; log the battery's current too"
             " (--log-column current=COLUMN), or watts"
         )
+    hint = next((f" ({note})" for note in notes if SAYS_NO_POWER in note), "")
     return (
-        "holds no power; expected watts, or the battery's volts and amperes, or motor currents with"
-        " --motor k,R,bias, or energy so far; name a column: --log-column power=COLUMN"
+        f"holds no power{hint}; expected watts, or the battery's volts and amperes, or motor"
+        " currents with --motor k,R,bias, or energy so far; name it: --log-column power=COLUMN"
     )
 
 

@@ -22,7 +22,7 @@ OWN_SHARE = 0.02  # of a term that the others must leave unexplained
 PRECISE = 0.02  # of all energy: a term known to this is told apart, however little is its own
 ENOUGH_TURNING = 10.0  # [rad]
 _TURNING_WINDOWS, _TURNING_TIME, _TURNING_RUNS = 0.05, 0.2, 3
-_FOLDS = 12
+FOLDS = 16  # in which runs are left out at most
 _RICHER = 0.98  # of the error: a law with one more term has to be better by this
 
 
@@ -186,7 +186,7 @@ def errors_left_out(windows: Pieces, sums: Sums, laws: Sequence[Law], among: Mas
     """How far each law is off on runs left out in turn, of the runs ``among`` (r,): sums of [J]."""
     errors = np.zeros(len(laws))
     inside = np.flatnonzero(among)
-    for fold in np.array_split(inside, min(len(inside), _FOLDS)):
+    for fold in np.array_split(inside, min(len(inside), FOLDS)):
         weights = among.astype(float)
         weights[fold] = 0.0
         out = windows.take(np.isin(windows.run, [sums.runs[k] for k in fold]))

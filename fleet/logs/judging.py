@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 from typing import Literal
@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from fleet.logs.bases import LawFamily, by_forces, by_motion
 from fleet.logs.fitting import (
     CONFIDENCE,
+    FOLDS,
     RESAMPLES,
     Law,
+    Mask,
     MotionLaw,
     errors_left_out,
     intervals,
@@ -195,15 +197,25 @@ def _linear(trips: Pieces) -> LeftOut:
 
 def _left_out(family: LawFamily, terms: Law) -> LeftOut:
     predicted = np.empty(len(family.trips))
-    for run in np.unique(family.trips.run):
-        mine = family.trips.run == run
-        predicted[mine] = family.law(terms, _other(family, run)).predict(family.trips.take(mine))
+    for among in _folds(family):
+        mine = _asked(family, among)
+        predicted[mine] = family.law(terms, among).predict(family.trips.take(mine))
     return LeftOut(family.trips.run, family.trips.energy, predicted)
 
 
-def _other(family: LawFamily, run: int) -> int | None:
-    """The run to leave out; None where there is only one."""
-    return run if len(family.sums.runs) > 1 else None
+def _folds(family: LawFamily) -> Iterator[Mask]:
+    """The runs (r,) that are left in, each run left out once: alone, or with few of very many."""
+    count = len(family.sums.runs)
+    for out in np.array_split(np.arange(count), min(count, FOLDS)):
+        among = np.ones(count, bool)
+        among[out] = count == 1
+        yield among
+
+
+def _asked(family: LawFamily, among: Mask) -> Mask:
+    """The trips (k,) of the runs that are left out; all, if there is only one run."""
+    out = ~among if not among.all() else among
+    return np.isin(family.trips.run, np.array(family.sums.runs)[out])
 
 
 def _best(motion: LawFamily, forces: LawFamily, nested: Sequence[LawJudged]) -> LawJudged:
@@ -211,13 +223,10 @@ def _best(motion: LawFamily, forces: LawFamily, nested: Sequence[LawJudged]) -> 
     candidates = [(family, terms) for family in (motion, forces) for terms in family.laws]
     everybody = np.ones(len(motion.sums.runs), bool)
     predicted = np.empty(len(motion.trips))
-    for run in np.unique(motion.trips.run):
-        among = everybody.copy()
-        if len(among) > 3:
-            among[motion.sums.runs.index(int(run))] = False
+    for among in _folds(motion):
         family, terms = candidates[_chosen(motion, forces, among)]
-        mine = motion.trips.run == run
-        predicted[mine] = family.law(terms, _other(family, run)).predict(family.trips.take(mine))
+        mine = _asked(family, among)
+        predicted[mine] = family.law(terms, among).predict(family.trips.take(mine))
     chosen = nested[_chosen(motion, forces, everybody)]
     left_out = LeftOut(motion.trips.run, motion.trips.energy, predicted)
     return LawJudged(chosen.family, chosen.terms, chosen.law, left_out)

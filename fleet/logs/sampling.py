@@ -149,7 +149,7 @@ def samples_of(
         float(np.median([np.median(np.diff(run.meter)) for run in ground.runs])),
         tuple(ground.files), len(files),
     )  # fmt: skip
-    return _regrouped(samples)
+    return _regrouped(samples) if len(samples.step) else samples
 
 
 def _regrouped(samples: Samples) -> Samples:

@@ -82,6 +82,7 @@ _COMMAND = re.compile(
 )
 _CHARGE = re.compile(r"(.*_)?(soc|percent(age)?|battery_?level|charge)(_|$)")
 _MOTOR = re.compile(r"(.*_)?motor_?cur(rent)?s?(_|$)")
+SAYS_NO_POWER = "is a state of charge, too coarse for power"
 _FASTEST_WHEEL = 3.0  # [m/s] beyond it a wheel's column is more likely in rad/s
 
 
@@ -271,7 +272,7 @@ def _unused(sheet: Sheet, signals: Signals) -> list[str]:
         charge = [name for name in sheet.columns if _CHARGE.match(split_name(name)[0])]
         motor = [name for name in sheet.columns if _MOTOR.match(split_name(name)[0])]
         if charge:
-            notes.append(f"{_listed(charge)} in percent say nothing of power")
+            notes.append(f"{_listed(charge)} {SAYS_NO_POWER}")
         if motor:
             notes.append(
                 f"{_listed(motor)}: which side? --log-column i_left=COLUMN, i_right=COLUMN"
