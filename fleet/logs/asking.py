@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -53,15 +53,25 @@ class LogSettings:
     mass: float | None = None  # [kg]
     offset: float | None = None  # what the battery's current reads at no current [A]
     electronics: float = 0.0  # constant power that the log leaves out [W]
+    inertia: float | None = None  # about the vertical axis [kg·m²]
+    efficiency: float | None = None  # of motors and gears
+    windings: float | None = None  # heat of a motor over its force squared [W/N²]
+    scrub_onset: float | None = None  # turning per metre from which scrub is full [rad/m]
+    regeneration: float | None = None  # share of the power of braking that is led back
     within: float = 10.0  # [%] of error that a trip may have
 
     def __post_init__(self) -> None:
-        for name in ("voltage", "track", "mass", "within"):
+        for name in ("voltage", "track", "mass", "within", "inertia", "scrub_onset", "efficiency"):
             value = getattr(self, name)
-            if value is not None and not 0.0 < value < float("inf"):
+            if value is not None and not 0.0 < value < inf:
                 raise ValueError(f"{name} is {value:g}; expected more than 0, and finite")
-        if not 0.0 <= self.electronics < float("inf"):
-            raise ValueError(f"electronics is {self.electronics:g} W; expected 0 or more")
+        for name in ("electronics", "windings", "regeneration"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value < inf:
+                raise ValueError(f"{name} is {value:g}; expected 0 or more, and finite")
+        for name in ("efficiency", "regeneration"):
+            if (getattr(self, name) or 0.0) > 1.0:
+                raise ValueError(f"{name} is {getattr(self, name):g}; expected at most 1")
         if self.offset is not None and not isfinite(self.offset):
             raise ValueError(f"offset is {self.offset:g} A; expected a finite number")
         for text in self.columns:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fleet.logs.fitting import Law, Mask, MotionLaw, Sums, identified, nested, sums_of
-from fleet.logs.forces import Chassis, linearised
+from fleet.logs.forces import ONSETS, Chassis, linearised
 from fleet.logs.grounds import LoggedRun, LogGround
 from fleet.logs.sampling import (
     STILL_SPEED,
@@ -25,7 +25,7 @@ from fleet.scenario.errors import bad
 
 Floats = NDArray[np.float64]
 
-_ROUNDS = 10
+_ROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +67,23 @@ def by_motion(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> LawFami
 
 def by_forces(
     ground: LogGround, chassis: Chassis, start: LawFamily, lag: float = 0.0, over: float = 0.0
-) -> tuple[LawFamily, NDArray[np.float64]]:
-    """The law by forces, made linear where it fits best, and its parameters (5,).
+) -> tuple[LawFamily, Chassis]:
+    """The law by forces, made linear where it fits best, and the chassis with its onset."""
+    onsets: Sequence[float] = ONSETS
+    if ground.settings.scrub_onset is not None or "angle" not in start.richest:
+        onsets = (chassis.scrub_onset,)
+    fitted = [
+        (*_linear_where_best(ground, replace(chassis, scrub_onset=onset), start, lag, over), onset)
+        for onset in onsets
+    ]
+    family, _, onset = min(fitted, key=lambda found: found[1])
+    return family, replace(chassis, scrub_onset=onset)
+
+
+def _linear_where_best(
+    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float, over: float
+) -> tuple[LawFamily, float]:
+    """The law by forces of one chassis, and the squares that it leaves.
 
     Gauss and Newton's iteration from the law by motion; runs that are left out are left out of the
     fit, not of the point at which the law was made linear.
@@ -87,7 +102,7 @@ def by_forces(
             best, least = parameters, error
         law = sums_of(cut).law(terms)
         new = np.array([law[term] for term in TERMS])
-        done = np.abs(new - parameters).max() <= 1e-6 * max(1.0, float(np.abs(new).max()))
+        done = np.abs(new - parameters).max() <= 1e-4 * max(1.0, float(np.abs(new).max()))
         parameters = new if error <= least else 0.5 * (best + new)
         if done:
             break
@@ -95,7 +110,7 @@ def by_forces(
     cut = windows(samples)
     return LawFamily(
         "forces", samples, cut, trips(samples), sums_of(cut), [tuple(terms)], why
-    ), best  # fmt: skip
+    ), least  # fmt: skip
 
 
 def _rates_at(chassis: Chassis, parameters: Floats) -> Rates:

@@ -59,18 +59,21 @@ def runs_of(
     notes += told
     time, v, omega, told = motion_of(signals, settings)
     notes += told
-    runs = []
     stretches, told = ascending(time, signals.name)
     notes += told
     metered, told = ascending(meter, signals.name)
     notes += [note for note in told if note not in notes]
     seen = np.zeros_like(v) if omega is None else omega
-    for rows in stretches:
-        for readings in metered:
-            motion = (time[rows], v[rows], seen[rows])
-            run = _aligned(signals.name, motion, meter[readings], power[readings])
-            if run is not None:
-                runs.append(run)
+    runs = [
+        run
+        for rows in stretches
+        for readings in metered
+        if (
+            run := _aligned(
+                signals.name, (time[rows], v[rows], seen[rows]), meter[readings], power[readings]
+            )
+        )
+    ]
     if not runs:
         length = float(np.ptp(time)) if len(time) else 0.0
         raise bad(

@@ -11,7 +11,7 @@ from fleet.scenario.errors import bad
 
 Floats = NDArray[np.float64]
 
-_EPOCH = ((1e17, 1e-9, "ns"), (1e14, 1e-6, "µs"), (1e11, 1e-3, "ms"), (1e8, 1.0, "s"))
+_EPOCH = ((1e18, 1e-9, "ns"), (1e15, 1e-6, "µs"), (1e12, 1e-3, "ms"), (1e9, 1.0, "s"))
 _STEP = ((5e4, 1e-9, "ns"), (5e3, 1e-6, "µs"), (5.0, 1e-3, "ms"), (0.0, 1.0, "s"))
 LONGEST_GAP = 1.0  # [s], or five steps if these are longer
 _STEPS = 5.0
@@ -20,8 +20,8 @@ _STEPS = 5.0
 def seconds(time: Floats, source: str) -> tuple[Floats, str]:
     """Times in seconds, and a sentence if they were in another unit.
 
-    Times since 1970 are told by their size, others by their steps: robots are read 1 to 1000
-    times a second.
+    Times since 1970 (of 2001 to 2065) are told by their size, others by their steps: robots are
+    read 1 to 1000 times a second.
 
     Raises:
         BadInput: there are fewer than three times.
@@ -34,8 +34,9 @@ def seconds(time: Floats, source: str) -> tuple[Floats, str]:
             " some samples a second",
         )  # fmt: skip
     size, step = float(np.median(finite)), float(np.median(np.abs(np.diff(finite))))
-    table, value = (_EPOCH, size) if size > _EPOCH[-1][0] else (_STEP, step)
-    factor, unit = next((f, u) for least, f, u in table if value >= least)
+    since_1970 = [(f, u) for least, f, u in _EPOCH if least <= size < 3.0 * least]
+    by_step = next((f, u) for least, f, u in _STEP if step >= least)
+    factor, unit = since_1970[0] if since_1970 else by_step
     if unit == "s":
         return time, ""
     return time * factor, f"times taken as {unit}: {step:g} from sample to sample"
@@ -84,8 +85,8 @@ def ascending(time: Floats, source: str) -> tuple[list[NDArray[np.intp]], list[s
     gap = steps > longest
     if gap.any():
         notes.append(
-            f"cut at {np.count_nonzero(gap)} places where time goes backward, or nothing is logged for"
-            f" more than {longest:.3g} s: nothing is integrated across them"
+            f"cut at {np.count_nonzero(gap)} places where time goes backward, or nothing is logged"
+            f" for more than {longest:.3g} s: nothing is integrated across them"
         )
     return np.split(keep, np.flatnonzero(gap) + 1), notes
 

@@ -186,7 +186,7 @@ def _check_push(
                 " these are the motors' currents, not the battery's; give --motor k,R,bias, or the"
                 " battery's current",
             )  # fmt: skip
-    slow, fast = np.quantile(rim[rolling], [0.25, 0.75])
+    slow, fast = np.quantile(rim[rolling], [0.1, 0.9])
     low, high = rim[rolling] <= slow, rim[rolling] >= fast
     if fast > 1.5 * slow and watts[high].mean() < 1.05 * watts[low].mean():
         notes.append(

@@ -4,11 +4,12 @@ The law by forces has the parameters of a simulated robot: rolling resistance F,
 k, scrub Q when turning, electronics, and power while turning. Wheels push against them and against
 the robot's inertia; its battery pays work over efficiency, and heat in the windings:
 
-    f = (m·a + F·sgn(w) + k·w)/2 ∓ (I·α + Q·s)/(2h),  P = c + τ + Σ [f·w]₊/η + κ·f²
+    f = (m·a + F·sgn(w) + k·w)/2 ∓ (I·α + Q·s)/(2h),  P = c + τ·|s| + Σ [f·w]₊/η + κ·f²
 
 for wheels at speeds w = v ∓ h·ω. Scrub is full once the robot turns sharply: s is ω/(onset·|v|)
-within ± 1. Mass, track, efficiency and windings are not fitted: they are known, or a robot's
-defaults.
+within ± 1. Mass, track, efficiency and windings are not fitted: they are told, or a robot's
+defaults. Of two onsets, that of tyres that drag on every bend and that of wheels that drag on the
+spot only, the one that fits better is taken, unless one is told.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from fleet.robot import RobotSpec
 
 Floats = NDArray[np.float64]
 
+ONSETS = (0.4, 100.0)  # [rad/m] of a skid steer, and of round wheels with a caster
 _SOFT = 0.02  # [rad/s] over which scrub sets in on the spot
 _ROLLS = 1e-3  # [m/s] below which a wheel's resistance fades
-TURNS = 0.05  # [rad/s] from which a robot turns
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,7 @@ class Chassis:
     half_track: float  # [m]
     efficiency: float = 1.0
     windings: float = 0.0  # [W/N²]
-    scrub_onset: float = 100.0  # [rad/m]
+    scrub_onset: float = ONSETS[-1]  # [rad/m]
     regeneration: float = 0.0
 
 
@@ -46,15 +47,22 @@ def chassis_of(settings: LogSettings) -> Chassis:
     spec = RobotSpec()
     mass = settings.mass if settings.mass is not None else spec.mass
     track = settings.track if settings.track is not None else spec.wheel_track
-    motor = settings.motor
+    motor, told = settings.motor, settings
     return Chassis(
         mass=mass,
-        inertia=0.5 * mass * (0.5 * track) ** 2,
+        inertia=_or(told.inertia, 0.5 * mass * (0.5 * track) ** 2),
         half_track=0.5 * track,
-        efficiency=1.0 if motor is not None else spec.efficiency,
-        windings=motor.resistance / motor.k**2 if motor is not None else spec.windings,
-        scrub_onset=spec.scrub_onset,
+        efficiency=_or(told.efficiency, spec.efficiency if motor is None else 1.0),
+        windings=_or(
+            told.windings, spec.windings if motor is None else motor.resistance / motor.k**2
+        ),
+        scrub_onset=_or(told.scrub_onset, ONSETS[-1]),
+        regeneration=_or(told.regeneration, 0.0),
     )
+
+
+def _or(told: float | None, usual: float) -> float:
+    return usual if told is None else told
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +84,17 @@ class _Side:
         return force
 
 
+def scrub_share(chassis: Chassis, v: Floats, omega: Floats) -> Floats:
+    """How much of the scrub there is (n,), -1 to 1: tyres that roll yield before they slide."""
+    share: Floats = np.clip(omega / (_SOFT + chassis.scrub_onset * np.abs(v)), -1.0, 1.0)
+    return share
+
+
 def _sides(chassis: Chassis, time: Floats, v: Floats, omega: Floats) -> tuple[_Side, _Side]:
     half = chassis.half_track
     push = 0.5 * chassis.mass * np.gradient(v, time)
     twist = 0.5 * chassis.inertia / half * np.gradient(omega, time)
-    soft = np.clip(omega / (_SOFT + np.abs(v) / chassis.scrub_onset), -1.0, 1.0)
+    soft = scrub_share(chassis, v, omega)
 
     def side(sign: float) -> _Side:
         wheel = v + sign * half * omega
@@ -109,7 +123,7 @@ def linearised(
     terms = np.zeros((len(v), 5))
     rest = np.zeros(len(v))
     terms[:, 1] = 1.0
-    terms[:, 3] = np.abs(omega) > TURNS
+    terms[:, 3] = np.abs(scrub_share(chassis, v, omega))
     for side in _sides(chassis, time, v, omega):
         force = side.force(parameters)
         gain = np.where(

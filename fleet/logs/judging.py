@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from math import sqrt
+from dataclasses import dataclass, replace
+from math import ceil, floor, sqrt
 from typing import Literal
 
 import numpy as np
@@ -88,7 +88,7 @@ class Judgement:
     forces: LawFamily
     chassis: Chassis
     nested: Sequence[LawJudged]  # by motion, distance first; then by forces
-    best: LawJudged  # what the logs choose; each left-out run without having seen it
+    best: LawJudged  # of motion, as the logs choose; for runs left out, as the others choose
     intervals: dict[str, Interval]  # of the best law's coefficients
     preset: LawJudged  # by forces: what a simulated robot is made of
     preset_intervals: dict[str, Interval]
@@ -117,8 +117,7 @@ def judge(ground: LogGround) -> Judgement:
     lag, over, reading = reading_of(ground)
     motion = by_motion(ground, lag, over)
     _check(ground, motion)
-    chassis = chassis_of(ground.settings)
-    forces, _ = by_forces(ground, chassis, motion, lag, over)
+    forces, chassis = by_forces(ground, chassis_of(ground.settings), motion, lag, over)
     linear = _linear(motion.trips)
     nested = [
         LawJudged(
@@ -128,7 +127,7 @@ def judge(ground: LogGround) -> Judgement:
         for family in (motion, forces)
         for terms in family.laws
     ]  # fmt: skip
-    best = _best(motion, forces, nested)
+    best = _best(motion, nested)
     band = 0.01 * ground.settings.within
     share = _share(linear, band)
     total = _by_run(
@@ -145,10 +144,9 @@ def judge(ground: LogGround) -> Judgement:
         if enough
         else "cannot tell"
     )
-    family = motion if best.family == "motion" else forces
     return Judgement(
         ground, motion, forces, chassis, nested, best,
-        _with_offset(motion, ground, intervals(family.sums, best.terms), best.law),
+        _with_offset(motion, ground, intervals(motion.sums, best.terms), best.law),
         nested[-1],
         _with_offset(motion, ground, intervals(forces.sums, forces.richest), nested[-1].law),
         linear, share, total, better, by_trip, by_total, _outcome(by_trip, better), reading, band,
@@ -218,27 +216,21 @@ def _asked(family: LawFamily, among: Mask) -> Mask:
     return np.isin(family.trips.run, np.array(family.sums.runs)[out])
 
 
-def _best(motion: LawFamily, forces: LawFamily, nested: Sequence[LawJudged]) -> LawJudged:
-    """The law that runs choose which are left out in turn; for each run, without that run."""
-    candidates = [(family, terms) for family in (motion, forces) for terms in family.laws]
-    everybody = np.ones(len(motion.sums.runs), bool)
+def _best(motion: LawFamily, nested: Sequence[LawJudged]) -> LawJudged:
+    """The law of motion that runs choose; for those that are left out, without them."""
     predicted = np.empty(len(motion.trips))
     for among in _folds(motion):
-        family, terms = candidates[_chosen(motion, forces, among)]
-        mine = _asked(family, among)
-        predicted[mine] = family.law(terms, among).predict(family.trips.take(mine))
-    chosen = nested[_chosen(motion, forces, everybody)]
+        terms = motion.laws[_chosen(motion, among)]
+        mine = _asked(motion, among)
+        predicted[mine] = motion.law(terms, among).predict(motion.trips.take(mine))
+    chosen = nested[_chosen(motion, np.ones(len(motion.sums.runs), bool))]
     left_out = LeftOut(motion.trips.run, motion.trips.energy, predicted)
-    return LawJudged(chosen.family, chosen.terms, chosen.law, left_out)
+    return replace(chosen, left_out=left_out)
 
 
-def _chosen(motion: LawFamily, forces: LawFamily, among: NDArray[np.bool_]) -> int:
-    errors = [
-        error
-        for family in (motion, forces)
-        for error in errors_left_out(family.windows, family.sums, family.laws, among)
-    ]
-    return simplest(errors)
+def _chosen(motion: LawFamily, among: Mask) -> int:
+    """Which of the nested laws runs ``among`` (r,) choose."""
+    return simplest(errors_left_out(motion.windows, motion.sums, motion.laws, among).tolist())
 
 
 def _share(left_out: LeftOut, band: float) -> Interval:
@@ -278,7 +270,8 @@ def trips_needed(
 ) -> int | None:
     """How many independent trips would settle it, at such a share within the band; None: never."""
     for count in range(1, _MOST_TRIPS):
-        found = wilson_interval(round(share * count), count)
+        good = ceil(share * count) if answer == "fails" else floor(share * count)
+        found = wilson_interval(good, count)
         if (answer == "holds" and found.low >= need) or (answer == "fails" and found.high < need):
             return count
     return None

@@ -14,7 +14,6 @@ from fleet.logs.judging import NEEDED, Judgement, LeftOut
 from fleet.logs.presets import preset_text
 from fleet.logs.sampling import TERMS, Pieces
 from fleet.logs.sentences import (
-    FORCE_UNITS,
     FORCES,
     LEADS,
     NAMES,
@@ -164,8 +163,7 @@ def _laws(judgement: Judgement) -> list[dict[str, Any]]:
         rows.append(
             {
                 "name": what if judged.family == "motion" else f"by forces: {what}",
-                "chosen": (judged.family, judged.terms)
-                == (judgement.best.family, judgement.best.terms),
+                "chosen": judged.family == "motion" and judged.terms == judgement.best.terms,
                 "within": f"{100.0 * judged.left_out.within(judgement.band):.0f}",
                 "median": f"{100.0 * judged.left_out.median:.1f}",
                 "total": f"{100.0 * judged.left_out.total:+.1f}".replace("-", "−"),
@@ -175,16 +173,14 @@ def _laws(judgement: Judgement) -> list[dict[str, Any]]:
 
 
 def _coefficients(judgement: Judgement) -> list[dict[str, str]]:
-    best = judgement.best
-    names, units = (NAMES, UNITS) if best.family == "motion" else (FORCES, FORCE_UNITS)
     return [
         {
-            "name": names[term],
+            "name": NAMES[term],
             "value": f"{judgement.intervals[term].value:.4g}",
             "interval": _bounds(judgement.intervals[term]),
-            "unit": units[term],
+            "unit": UNITS[term],
         }
-        for term in best.terms
+        for term in judgement.best.terms
     ]
 
 

@@ -29,7 +29,6 @@ FORCES = {
     "distance": "rolling resistance", "time": "constant power", "angle": "scrub",
     "turning": "power while turning", "square": "viscous resistance",
 }  # fmt: skip
-FORCE_UNITS = {"distance": "N", "time": "W", "angle": "N·m", "turning": "W", "square": "N·s/m"}
 
 
 def verdict_sentence(judgement: Judgement) -> str:

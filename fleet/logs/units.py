@@ -40,6 +40,7 @@ def split_name(name: str) -> tuple[str, str]:
     """
     bracketed = _BRACKETS.search(name)
     bare = _BRACKETS.sub(" ", name) if bracketed else name
+    bare = re.sub(r"[_ ](mV|mA|[mk]Wh?|kJ|Wh)$", lambda unit: unit[0].lower(), bare.strip())
     bare = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", bare)
     words = re.sub(r"[^0-9A-Za-zµθωφψ]+", "_", bare).strip("_")
     return words.lower(), bracketed[1] if bracketed else ""
