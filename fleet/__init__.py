@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fleet.assembly import run
     from fleet.observer import Observer
+    from fleet.playthrough import Playthrough, play
     from fleet.results import Summary
     from fleet.scenario.model import Scenario
     from fleet.study.design import Study
@@ -18,12 +19,23 @@ if TYPE_CHECKING:
     from fleet.study.sweeping import sweep
 
 __all__ = [
-    "Observer", "Scenario", "Study", "StudyResult", "Summary", "__version__", "run", "sweep"
-]  # fmt: skip
+    "Observer",
+    "Playthrough",
+    "Scenario",
+    "Study",
+    "StudyResult",
+    "Summary",
+    "__version__",
+    "play",
+    "run",
+    "sweep",
+]
 
 __version__ = "0.1.0"
 
 _HOMES = {
+    "Playthrough": "fleet.playthrough",
+    "play": "fleet.playthrough",
     "Observer": "fleet.observer",
     "Scenario": "fleet.scenario.model",
     "Study": "fleet.study.design",

@@ -78,17 +78,41 @@ class Simulation:
         """Play to the end: of the network's life, of the rounds, or of the time."""
         started = time.perf_counter()
         try:
-            self._audience.run_started(self.fleet)
-            self._begin()
+            self.begin()
             while self.ended is None:
-                self._go_on()
-            self._presence.stand(self.now)
-            self._journeys.break_off(self.now)
-            summary = self._summary(self.ended, time.perf_counter() - started)
-            self._audience.run_ended(summary)
-            return summary
+                self.go_on()
+            return self.finish(time.perf_counter() - started)
         finally:
-            self._audience.closed()
+            self.close()
+
+    def begin(self) -> None:
+        """Everybody is in place: the run begins."""
+        self._audience.run_started(self.fleet)
+        self._begin()
+
+    def finish(self, wall_time: float) -> Summary:
+        """The run has ended, for the reason that ``ended`` gives: sum it up."""
+        assert self.ended is not None
+        self._presence.stand(self.now)
+        self._journeys.break_off(self.now)
+        summary = self._summary(self.ended, wall_time)
+        self._audience.run_ended(summary)
+        return summary
+
+    def close(self) -> None:
+        """Let observers go, however far the run has come."""
+        self._audience.closed()
+
+    def switch(self, protocol: ProtocolFunction) -> None:
+        """From now on robots talk by another protocol.
+
+        Raises:
+            ValueError: it, or the one so far, is a dispatcher of a stream.
+        """
+        talks, dispatching = self._talks, isinstance(protocol, Dispatcher)
+        if dispatching or not isinstance(talks, Conversations):
+            raise ValueError("a dispatcher cannot take over from a protocol, nor one from it")
+        talks.protocol = protocol
 
     def _begin(self) -> None:
         """Put down what is known to come."""
@@ -103,8 +127,8 @@ class Simulation:
             agenda.at(self._mode.duration, partial(self._end, "time over"))
         self._expect()
 
-    def _go_on(self) -> None:
-        """Drive up to what is due next, or to the next end of a trip, and see to it."""
+    def go_on(self) -> None:
+        """One step: drive up to what is due next, or to the next end of a trip, and see to it."""
         due = self._agenda.next_time
         if due <= self.now:
             self._agenda.take()()
