@@ -12,23 +12,13 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from fleet.radio.catalogue import RADIOS
-
-from fleet.modes import TIMINGS
-from fleet.motion.motions import MOTIONS
+from fleet.catalogue import takers
 from fleet.scenario.binding import field_types, keywords
 from fleet.scenario.choices import TABLES as PLAIN_TABLES
 from fleet.scenario.model import Scenario
-from protocols.catalogue import PROTOCOLS
-from worlds.catalogue import EVENTS, WORLDS
 
 CATALOGUES = {
-    "protocol": {name: entry.function for name, entry in PROTOCOLS.items()},
-    "world": {name: entry.function for name, entry in WORLDS.items()},
-    "motion": {name: entry.options for name, entry in MOTIONS.items()},
-    "time": {name: entry.function for name, entry in TIMINGS.items()},
-    "radio": {name: entry.function for name, entry in RADIOS.items()},
-    "events": {name: entry.function for name, entry in EVENTS.items()},
+    kind: takers(kind) for kind in ("protocol", "world", "motion", "time", "radio", "events")
 }
 
 NUMBERS = (

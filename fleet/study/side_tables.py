@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import dist
 from typing import Any, TypeAlias
 
 from fleet.fleet import Fleet
@@ -42,7 +43,7 @@ class RoundsTable(Observer):
             "arrived": None,  # [s] when the robot came to rest
             "path": 0.0,  # [m] driven
             "energy": 0.0,  # [J] drained
-            "energy_left": 0.0,  # [J] of the whole fleet, after
+            "fleet_energy_left": 0.0,  # [J] of all robots together, after
         }
         self.rows.append(row)
 
@@ -58,12 +59,12 @@ class RoundsTable(Observer):
         self._of[event.id] |= {
             "auctioneer": award.auctioneer,
             "winner": award.winner,
-            "energy_left": self._energy_left(),
+            "fleet_energy_left": self._left(),
         }
 
     def broken_off(self, event: Event, reason: str, time: float) -> None:
         """Nobody got it."""
-        self._of[event.id] |= {"outcome": reason, "energy_left": self._energy_left()}
+        self._of[event.id] |= {"outcome": reason, "fleet_energy_left": self._left()}
 
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """What it took."""
@@ -72,10 +73,10 @@ class RoundsTable(Observer):
             "arrived": trip.ended,
             "path": trip.path,
             "energy": trip.energy,
-            "energy_left": self._energy_left(),
+            "fleet_energy_left": self._left(),
         }
 
-    def _energy_left(self) -> float:
+    def _left(self) -> float:
         return sum(robot.battery.charge for robot in self._fleet.robots)
 
 
@@ -97,11 +98,11 @@ class RobotsTable(Observer):
                     "start_y": y,  # [m]
                     "end_x": x,  # [m]
                     "end_y": y,  # [m]
-                    "reactions": 0,  # trips that arrived
-                    "failed": 0,  # trips that did not
+                    "reactions": 0,  # trips that arrived at an event
+                    "failed": 0,  # trips to an event that did not
                     "distance": 0.0,  # [m] straight lines from start to end, all trips
                     "path": 0.0,  # [m] driven
-                    "energy_left": robot.battery.charge,  # [J]
+                    "energy_left": robot.battery.charge,  # [J] of this robot
                     "died": None,  # [s] when its battery was empty
                 }
             )
@@ -109,19 +110,28 @@ class RobotsTable(Observer):
     def trip_ended(self, event: Event, trip: Trip) -> None:
         """Add it up."""
         row = self.rows[trip.robot]
-        (x, y), (x0, y0) = trip.end, trip.origin
-        row["end_x"], row["end_y"] = x, y
         row["reactions"] += trip.outcome == "arrived"
         row["failed"] += trip.outcome != "arrived"
-        row["distance"] += ((x - x0) ** 2 + (y - y0) ** 2) ** 0.5
-        row["path"] += trip.path
-        if not self._fleet.robots[trip.robot].alive:
-            row["died"] = trip.ended
+        self._drove(trip)
+
+    def relocated(self, event: Event, trip: Trip) -> None:
+        """It drove, but to no event."""
+        self._drove(trip)
+
+    def exhausted(self, robot: RobotId, time: float) -> None:
+        """That was all it had."""
+        self.rows[robot]["died"] = time
 
     def run_ended(self, summary: Summary) -> None:
-        """What is left."""
+        """What is left, and where."""
         for row, robot in zip(self.rows, self._fleet.robots, strict=True):
+            row["end_x"], row["end_y"] = robot.position
             row["energy_left"] = robot.battery.charge
+
+    def _drove(self, trip: Trip) -> None:
+        row = self.rows[trip.robot]
+        row["distance"] += dist(trip.origin, trip.end)
+        row["path"] += trip.path
 
 
 TABLES: dict[str, type[RoundsTable] | type[RobotsTable]] = {
