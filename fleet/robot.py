@@ -128,7 +128,7 @@ class Appraisal(NamedTuple):
 class Robot:
     """One robot of a running fleet. Motion moves it and drains it; protocols only ask it.
 
-    It is the :class:`protocols.messages.Robot` that conversations see.
+    It is the :class:`protocols.messages.RobotView` that conversations see.
     """
 
     __slots__ = (

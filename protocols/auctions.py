@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeAlias
 
-from protocols.messages import Award, Bid, Event, Heard, Robot, RobotId, Transmission, View
+from protocols.messages import Award, Bid, Event, Heard, RobotId, RobotView, Transmission, View
 from protocols.metrics import Metric
 
 Auction: TypeAlias = Generator[Transmission, Heard, Award]
@@ -54,7 +54,7 @@ ONE_HOP = AuctionRules()
 TWO_HOPS = AuctionRules(hops=2)
 
 
-def offer(robot: Robot, event: Event, metric: Metric) -> Bid | None:
+def offer(robot: RobotView, event: Event, metric: Metric) -> Bid | None:
     """The robot's bid, or None if it believes that the trip is more than it can afford."""
     if robot.energy < robot.cost_to(event.position):
         return None
@@ -73,7 +73,7 @@ def auction(
     event: Event,
     metric: Metric,
     rules: AuctionRules = ONE_HOP,
-    may_bid: Callable[[Robot], bool] | None = None,
+    may_bid: Callable[[RobotView], bool] | None = None,
 ) -> Auction:
     """Call, collect the bids along the tree of calls, award the event to the best.
 

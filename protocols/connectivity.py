@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from protocols.auctions import AuctionRules, auction
 from protocols.geometry import squared_distance
-from protocols.messages import Award, Conversation, Event, Robot, RobotId, View
+from protocols.messages import Award, Conversation, Event, RobotId, RobotView, View
 from protocols.metrics import Metric, energy_left
 from protocols.routing import TWO_SR, Search, find
 
@@ -38,7 +38,7 @@ def mia_ta(
     return won
 
 
-def can_be_spared(robot: Robot) -> bool:
+def can_be_spared(robot: RobotView) -> bool:
     """Whether the robot's neighbours hang together without it, each within range of another."""
     places = list(robot.neighbours.values())
     reach = robot.radio_range * robot.radio_range

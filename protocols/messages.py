@@ -60,7 +60,7 @@ Conversation: TypeAlias = Generator[Transmission, Heard, Award]
 """A protocol under way: it yields what is sent and is told who heard it."""
 
 
-class Robot(Protocol):
+class RobotView(Protocol):
     """What one robot knows: itself, and where its radio neighbours were last heard."""
 
     @property
@@ -87,7 +87,7 @@ class Robot(Protocol):
         """The energy it believes that going to ``site`` takes [J]; inf if it cannot."""
 
 
-View: TypeAlias = Sequence[Robot]
+View: TypeAlias = Sequence[RobotView]
 """The fleet by robot id. A protocol asks only the robot whose turn it is to speak."""
 
 ProtocolFunction: TypeAlias = Callable[[View, Event, RobotId], Conversation]

@@ -12,27 +12,27 @@ from dataclasses import dataclass
 from math import dist, inf
 from typing import TypeAlias
 
-from protocols.messages import Point, Robot
+from protocols.messages import Point, RobotView
 
-Metric: TypeAlias = Callable[[Robot, Point], float]
+Metric: TypeAlias = Callable[[RobotView, Point], float]
 
 
-def energy_left(robot: Robot, site: Point) -> float:
+def energy_left(robot: RobotView, site: Point) -> float:
     """Most energy left after the trip; the cost is minus that energy, m·d − E_R [J]."""
     return robot.cost_to(site) - robot.energy
 
 
-def distance(robot: Robot, site: Point) -> float:
+def distance(robot: RobotView, site: Point) -> float:
     """Nearest to the event, as the crow flies [m]."""
     return dist(robot.position, site)
 
 
-def cost_share(robot: Robot, site: Point) -> float:
+def cost_share(robot: RobotView, site: Point) -> float:
     """Smallest share of the battery spent on the trip, m·d/E_R."""
     return robot.cost_to(site) / robot.energy if robot.energy > 0.0 else inf
 
 
-def cost_over_left(robot: Robot, site: Point) -> float:
+def cost_over_left(robot: RobotView, site: Point) -> float:
     """Least spent for each joule that is left, m·d/(E_R − m·d).
 
     One way to read the paper's m·d(E_R − m·d), taking the bracket for a denominator.
@@ -41,7 +41,7 @@ def cost_over_left(robot: Robot, site: Point) -> float:
     return cost / (robot.energy - cost) if robot.energy > cost else inf
 
 
-def cost_times_left(robot: Robot, site: Point) -> float:
+def cost_times_left(robot: RobotView, site: Point) -> float:
     """Smallest product of what is spent and what is left, m·d·(E_R − m·d) [J²].
 
     The paper's formula as it stands, the lowest winning: it favours the near, and the empty.
@@ -50,7 +50,7 @@ def cost_times_left(robot: Robot, site: Point) -> float:
     return cost * (robot.energy - cost)
 
 
-def most_cost_times_left(robot: Robot, site: Point) -> float:
+def most_cost_times_left(robot: RobotView, site: Point) -> float:
     """Largest product of what is spent and what is left, m·d·(E_R − m·d) [J²].
 
     The paper's formula as it stands, the highest winning: it favours the far, and the full.
@@ -80,7 +80,7 @@ class CompanyShare:
         if not self.balance >= 0.0:
             raise ValueError(f"balance is {self.balance}; expected 0 or more")
 
-    def __call__(self, robot: Robot, site: Point) -> float:
+    def __call__(self, robot: RobotView, site: Point) -> float:
         """The bid's cost [J^(1 − b)]."""
         if not robot.energy > 0.0:
             return inf
@@ -106,6 +106,6 @@ class EnergyLeftMinusCost:
         if not self.weight >= 0.0:
             raise ValueError(f"weight is {self.weight}; expected 0 or more")
 
-    def __call__(self, robot: Robot, site: Point) -> float:
+    def __call__(self, robot: RobotView, site: Point) -> float:
         """The bid's cost [J]."""
         return self.weight * robot.cost_to(site) - robot.energy

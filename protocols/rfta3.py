@@ -41,8 +41,8 @@ from protocols.messages import (
     Event,
     Heard,
     Move,
-    Robot,
     RobotId,
+    RobotView,
     Transmission,
     View,
 )
@@ -90,7 +90,7 @@ def rfta3(
     return Award(None, found)
 
 
-def anybody(_robot: Robot) -> bool:
+def anybody(_robot: RobotView) -> bool:
     """No robot is too precious to go."""
     return True
 
@@ -101,7 +101,7 @@ def ring(
     event: Event,
     metric: Metric,
     hops: int,
-    eligible: Callable[[Robot], bool],
+    eligible: Callable[[RobotView], bool],
     best: Bid | None = None,
 ) -> Ring:
     """Call ``hops`` deep for bids better than the callers' own, and than the ``best`` that there

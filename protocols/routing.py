@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from protocols.geometry import angle_between, bearing, crossing, next_around, squared_distance
-from protocols.messages import Event, Heard, Point, Robot, RobotId, Transmission, View
+from protocols.messages import Event, Heard, Point, RobotId, RobotView, Transmission, View
 
 Routing: TypeAlias = Generator[Transmission, Heard, RobotId]
 
@@ -173,7 +173,7 @@ def walk_face(
         reference = bearing(position, behind)
 
 
-def _enters_before(search: Search, me: Robot, ahead: RobotId, site: Point, left: bool) -> bool:
+def _enters_before(search: Search, me: RobotView, ahead: RobotId, site: Point, left: bool) -> bool:
     """Whether to enter the next face without passing over the edge that the line cuts."""
     if search.change != "best-angle":
         return search.change == "before"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import fleet
 from fleet.faults import Blackout, Faults, PlannedBreakdown
 from fleet.modes import Rounds, Stream
 from fleet.motion.options import DriveOptions
@@ -21,6 +22,7 @@ from fleet.results import Summary
 from fleet.robot import RobotSpec
 from fleet.scenario.model import Scenario
 from fleet.service import StreamFigures
+from fleet.study.side_tables import TABLES
 from worlds.catalogue import EVENTS, WORLDS
 from worlds.sensors import SensorSpec
 
@@ -109,3 +111,12 @@ def assert_default(said, default):
 def test_every_figure_is_defined(kind):
     for field in fields(kind):
         assert f"`{field.name}`" in RESULTS
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_every_column_of_a_table_is_defined_under_its_name(name):
+    table = TABLES[name]()
+    fleet.run(fleet.Scenario.of(motion="straight", rounds=1), [table])
+    described = RESULTS.partition(f"`{name}`: a row")[2].partition("\n`")[0]
+    told = re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", described, re.MULTILINE)))
+    assert told == list(table.rows[0])

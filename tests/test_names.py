@@ -9,25 +9,13 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 PACKAGES = ("fleet", "protocols", "worlds")
 
-# Names that are still used twice. These lists only ever get shorter; at the end they are empty.
-FILES_TO_RENAME: set[str] = set()
-CLASSES_TO_RENAME: set[str] = {
-    "Handler",
-    "Robot",
-}
-
 
 def test_no_two_files_of_fleet_share_a_name():
-    assert shared(files()) <= FILES_TO_RENAME
+    assert shared(files()) == {}
 
 
 def test_no_two_classes_share_a_name():
-    assert shared(classes()) <= CLASSES_TO_RENAME
-
-
-def test_what_has_been_renamed_is_struck_off():
-    renamed = (FILES_TO_RENAME - shared(files())) | (CLASSES_TO_RENAME - shared(classes()))
-    assert not renamed, f"strike these off the lists above: {sorted(renamed)}"
+    assert shared(classes()) == {}
 
 
 def files():
@@ -51,5 +39,5 @@ def classes():
 
 
 def shared(found):
-    """The names that stand for more than one thing."""
-    return {name for name, places in found.items() if len(places) > 1}
+    """The names that stand for more than one thing, and where."""
+    return {name: places for name, places in found.items() if len(places) > 1}

@@ -49,7 +49,7 @@ def parts_of(port: int) -> dict[str, Part]:
 def serving(parts: Mapping[str, Part], recording: Path) -> Iterator[str]:
     """The address of a page that shows ``recording``; it is served, on loopback, until the end."""
 
-    class Handler(BaseHTTPRequestHandler):
+    class PageHandler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
             path = urlsplit(self.path).path
             if path == RECORDING:
@@ -73,7 +73,7 @@ def serving(parts: Mapping[str, Part], recording: Path) -> Iterator[str]:
         def log_message(self, *_: Any) -> None:
             """Nobody needs to read who got which file."""
 
-    with ThreadingHTTPServer((LOOPBACK, 0), Handler) as server:
+    with ThreadingHTTPServer((LOOPBACK, 0), PageHandler) as server:
         server.daemon_threads = True
         Thread(target=server.serve_forever, daemon=True).start()
         here = f"http://{LOOPBACK}:{server.server_address[1]}"

@@ -35,7 +35,7 @@ PER_METRE = 20.0  # [J/m]
 
 @dataclass(frozen=True, slots=True)
 class _Extra:
-    """A robot that is there for the rehearsal: a :class:`protocols.messages.Robot`."""
+    """A robot that is there for the rehearsal: a :class:`protocols.messages.RobotView`."""
 
     id: RobotId
     position: Point  # [m]

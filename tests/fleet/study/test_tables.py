@@ -70,7 +70,7 @@ def test_rounds_add_up_to_the_run(result):
         assert sum(row["energy"] for row in mine) == pytest.approx(run["energy_drained"])
         assert sum(row["path"] for row in mine) == pytest.approx(40 * run["path_per_robot"])
         assert sum(row["outcome"] == "arrived" for row in mine) == run["served"]
-        assert mine[-1]["energy_left"] == pytest.approx(40 * run["energy_left_mean"])
+        assert mine[-1]["fleet_energy_left"] == pytest.approx(40 * run["energy_left_mean"])
         assert {row["search_radius"] for row in mine} == {run["search_radius"]}
 
 
