@@ -51,6 +51,22 @@ def kernel(function: F) -> F:
     return result
 
 
+def direct(kernel: F) -> F:
+    """The machine code of ``kernel``, which is called without asking again what types its
+    arguments have: for tuples of arrays that takes longer than the shorter kernels do.
+
+    Only if it has been called in this process, and always with arguments of the same types;
+    otherwise, and if nothing is compiled, ``kernel`` itself. Numbers are converted; arrays must
+    be what they were, contiguous ones too.
+    """
+    overloads = getattr(kernel, "overloads", {})
+    if len(overloads) != 1:
+        return kernel
+    (only,) = overloads.values()
+    entry_point: F = only.entry_point
+    return entry_point
+
+
 class _Locator:
     """Where numba keeps the code of a function, and what makes it stale."""
 

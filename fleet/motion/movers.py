@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from fleet.motion import SAMPLE_FIELDS
 from fleet.motion.chipmunk import disconnected
-from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.loop import command, embark, launch, report, run, sample, settle
 from fleet.motion.kernels.records import MOVER, SEGMENT, Floor, Traffic
 from fleet.motion.kernels.rollout import rollout
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
+from protocols.compiled import direct
 from protocols.messages import Point, RobotId
 
 if TYPE_CHECKING:

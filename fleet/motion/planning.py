@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion.floor import lay_out
-from fleet.motion.kernels.direct import direct
 from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.plan import NO_PATH, move_in, plan
 from fleet.motion.kernels.records import LINE, NOBODY, SEGMENT
+from protocols.compiled import direct
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
 

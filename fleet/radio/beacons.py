@@ -18,21 +18,9 @@ from numpy.typing import NDArray
 from fleet.radio.propagation import PHASE, Air, arrives, chance, farthest, hears, reach
 from fleet.radio.tables import Heard, note, tell
 from protocols.compiled import kernel
-from protocols.topology.relinking import gather
+from protocols.topology.cells import Cells, gather
 
 NEAREST = 0.01  # robots are taken to be at least so far apart, as antennas are [m]
-
-
-class Places(NamedTuple):
-    """Where robots are, in cells: see :class:`protocols.topology.cells.Cells`."""
-
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    head: NDArray[np.int64]
-    after: NDArray[np.int64]
-    grid: NDArray[np.float64]
-    marked: NDArray[np.bool_]
-    near: NDArray[np.int64]
 
 
 class Rota(NamedTuple):
@@ -89,18 +77,14 @@ def postponed(rota: Rota, seed: int) -> int:
 @kernel
 def _around(places, robot, distance):
     """Who is within a distance [m]: how many, and they are the first of ``near``."""
-    p = places
-    count = gather(
-        p.x[robot], p.y[robot], distance, robot,
-        p.x, p.y, p.head, p.after, p.grid, p.marked, p.near, 0,
-    )  # fmt: skip
+    count = gather(places, places.x[robot], places.y[robot], distance, robot, 0)
     for k in range(count):
-        p.marked[p.near[k]] = False
+        places.marked[places.near[k]] = False
     return count
 
 
 @kernel
-def hearers(air: Air, places: Places, robot: int, on_air: NDArray[np.bool_]) -> int:
+def hearers(air: Air, places: Cells, robot: int, on_air: NDArray[np.bool_]) -> int:
     """Who hears the robot where nothing is lost: how many, and they are first of ``near``."""
     p = places
     x, y = p.x[robot], p.y[robot]
@@ -116,7 +100,7 @@ def hearers(air: Air, places: Places, robot: int, on_air: NDArray[np.bool_]) -> 
 @kernel
 def audible(
     air: Air,
-    places: Places,
+    places: Cells,
     robot: int,
     on_air: NDArray[np.bool_],
     weakest: float,
@@ -140,7 +124,7 @@ def audible(
 
 
 @kernel
-def broadcast(air: Air, places: Places, frame: int, sender: int, on_air: NDArray[np.bool_]) -> int:
+def broadcast(air: Air, places: Cells, frame: int, sender: int, on_air: NDArray[np.bool_]) -> int:
     """Who hears a frame from ``sender``: their number; they are the first of ``near``."""
     p = places
     x, y = p.x[sender], p.y[sender]
@@ -155,7 +139,7 @@ def broadcast(air: Air, places: Places, frame: int, sender: int, on_air: NDArray
 
 @kernel
 def beacons_until(
-    time: float, air: Air, rota: Rota, places: Places, heard: Heard, on_air: NDArray[np.bool_]
+    time: float, air: Air, rota: Rota, places: Cells, heard: Heard, on_air: NDArray[np.bool_]
 ) -> int:
     """Send every beacon that is due up to ``time`` [s], in the order of time; how many.
 

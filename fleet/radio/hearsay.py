@@ -124,7 +124,7 @@ class HearsayRadio(Generic[Spec]):
 
     def __init__(self, spec: Spec, fleet: Scattered, seed: int, agenda: Agenda) -> None:
         from fleet.radio import kernels
-        from protocols.topology.cells import Cells
+        from protocols.topology.cells import cells_over, put
         from protocols.topology.neighbourhood import GRAPHS
 
         robots, radio_range = fleet.points, fleet.radio_range
@@ -140,11 +140,10 @@ class HearsayRadio(Generic[Spec]):
         self.reach, self.disc = radio_range, spec.a_disc
         self.air = spec.air(fleet, seed)
         n = len(robots)
-        self._cells = Cells(robots, 0.5 * radio_range)
+        self._put = put
+        self.places = cells_over(robots, 0.5 * radio_range)
         for robot, position in enumerate(robots):
-            self._cells.move(robot, position)
-        c = self._cells
-        self.places = kernels.beacons.Places(c.x, c.y, c.head, c.after, c.grid, c.marked, c.near)
+            put(self.places, robot, *position)
         self.on_air = np.ones(n, np.bool_)
         degree = n * np.pi * kernels.propagation.farthest(self.air) ** 2 / _area(robots)
         capacity = int(min(max(32, 3 * degree), n))
@@ -161,7 +160,7 @@ class HearsayRadio(Generic[Spec]):
     def refresh(self, moved: Iterable[Robot], time: float) -> None:
         """Robots are where they are now; beacons up to ``time`` [s] have been sent."""
         for robot in moved:
-            self._cells.move(robot.id, robot.position)
+            self._put(self.places, robot.id, *robot.position)
         self.beacon(time)
 
     def counts(self) -> AirCounts:

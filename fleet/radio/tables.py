@@ -126,10 +126,9 @@ def local_links(
         for j in range(heard.size[u]):
             if j == k or time - heard.time[u, j] > heard.validity:
                 continue
-            if blocks(
-                graph, heard.known[u, j], u, heard.known[u, k],
-                heard.x[u, j], heard.y[u, j], x, y, heard.x[u, k], heard.y[u, k],
-            ) and _shared(heard, heard.known[u, k], heard.known[u, j]):  # fmt: skip
+            w, v = heard.known[u, j], heard.known[u, k]
+            at_w, at_v = (heard.x[u, j], heard.y[u, j]), (heard.x[u, k], heard.y[u, k])
+            if blocks(graph, w, u, v, at_w, (x, y), at_v) and _shared(heard, v, w):
                 free = False
                 break
         if free:

@@ -15,18 +15,17 @@ within 1e-9 rad, and of robots in one place the lowest id keeps the links.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from protocols.topology.witness import between
+
 GraphName = Literal["gabriel", "udg", "rng", "emst"]
 Edges: TypeAlias = NDArray[np.intp]  # (m, 2), u < v
 
 DENSE_UP_TO = 1000  # robots for which all distances at once are quicker than a tree
-RIGHT_ANGLE = 1e-9  # [rad] how near to a right angle counts as one,
-BESIDE = 1e-16  # but not for robots so much nearer to one end (squared): both would yield
 
 
 def edges(positions: NDArray[np.float64], radio_range: float, graph: GraphName) -> Edges:
@@ -48,9 +47,9 @@ def unit_disc(positions: NDArray[np.float64], radio_range: float) -> NDArray[np.
 
         pairs = cKDTree(positions).query_pairs(radio_range, output_type="ndarray")
         return np.asarray(pairs, dtype=np.intp)
-    x, y = positions[:, 0], positions[:, 1]
-    squared = (x[:, None] - x[None, :]) ** 2 + (y[:, None] - y[None, :]) ** 2
-    return np.argwhere(np.triu(squared <= radio_range * radio_range, 1))
+    within = _squared(positions) <= radio_range * radio_range
+    u, v = np.divmod(np.flatnonzero(within), max(len(positions), 1))
+    return np.stack([u, v], axis=1)[u < v]
 
 
 def connected(count: int, pairs: NDArray[np.intp]) -> bool:
@@ -117,51 +116,41 @@ def spanning_tree(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> ND
 def _blocked(
     positions: NDArray[np.float64], pairs: NDArray[np.intp], *, lune: bool
 ) -> NDArray[np.bool_]:
-    """Which of the pairs (u, v) are kept apart by a third robot w: the rule of ``relink``."""
-    blocked = _clearly_blocked(positions, pairs)
-    u, v = pairs[~blocked, 0, None], pairs[~blocked, 1, None]
-    w = np.arange(len(positions))[None, :]
-    ux, uy = (positions[u, axis] - positions[w, axis] for axis in (0, 1))
-    vx, vy = (positions[v, axis] - positions[w, axis] for axis in (0, 1))
+    """Which of the pairs (u, v), all that are within range, are kept apart by a third robot w.
+
+    Whoever does is nearer to u than v is, or as near, and so is linked to u by a pair.
+    """
+    blocked = np.zeros(len(pairs), np.bool_)
+    pair, w = _linked_to_first(pairs, len(positions))
+    u, v = pairs[pair, 0], pairs[pair, 1]
+    x, y = np.ascontiguousarray(positions.T)
+    ux, uy, vx, vy = x[u] - x[w], y[u] - y[w], x[v] - x[w], y[v] - y[w]
     apart = between(u, v, w, (ux, uy), (vx, vy))
     if lune:
-        uv = ((positions[u] - positions[v]) ** 2).sum(axis=2)
-        apart |= (ux * ux + uy * uy < uv) & (vx * vx + vy * vy < uv)
-    blocked[~blocked] = apart.any(axis=1)
+        dx, dy = x[u] - x[v], y[u] - y[v]
+        uw, vw, uv = ux * ux + uy * uy, vx * vx + vy * vy, dx * dx + dy * dy
+        apart |= np.maximum(uw, vw) < uv
+    blocked[pair[apart]] = True
     return blocked
 
 
-def between(
-    u: NDArray[np.intp] | int,
-    v: NDArray[np.intp] | int,
-    w: NDArray[np.intp] | int,
-    to_u: Sequence[NDArray[np.float64]],
-    to_v: Sequence[NDArray[np.float64]],
-) -> NDArray[np.bool_]:
-    """Whether w keeps u and v apart in the Gabriel graph: it is in the closed disc over them.
-
-    ``to_u``, ``to_v``: x and y from w to u and to v [m]. All are broadcast. Of robots in one
-    place, the one with the lowest id stands for all.
-    """
-    (ux, uy), (vx, vy) = to_u, to_v
-    uw, vw = ux * ux + uy * uy, vx * vx + vy * vy
-    dot = ux * vx + uy * vy
-    near_right = dot * dot <= RIGHT_ANGLE * RIGHT_ANGLE * uw * vw
-    inside = (dot <= 0.0) | (near_right & (uw > BESIDE * vw) & (vw > BESIDE * uw))
-    at_u, at_v = uw == 0.0, vw == 0.0
-    if (at_u | at_v).any():
-        first = np.where(at_u & at_v, np.minimum(u, v), np.where(at_u, u, v))
-        inside = np.where(at_u | at_v, w < first, inside)
-    return np.asarray(inside & (w != u) & (w != v))
+def _linked_to_first(
+    pairs: NDArray[np.intp], count: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """All (pair, w) where the pairs link w, which is not v, to u of the pair (u, v)."""
+    sender, receiver = np.concatenate([pairs, pairs[:, ::-1]]).T
+    order = np.argsort(sender, kind="stable")
+    first = np.searchsorted(sender[order], np.arange(count + 1))
+    degree = np.diff(first)[pairs[:, 0]]
+    pair = np.repeat(np.arange(len(pairs)), degree)
+    skipped = first[pairs[:, 0]] - (np.cumsum(degree) - degree)
+    w = receiver[order][np.repeat(skipped, degree) + np.arange(len(pair))]
+    third = w != pairs[pair, 1]
+    return pair[third], w[third]
 
 
-def _clearly_blocked(positions: NDArray[np.float64], pairs: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Pairs with somebody well inside the diametral disc: most of them, found cheaply."""
-    x, y = positions[:, 0], positions[:, 1]
-    squared = (x[:, None] - x[None, :]) ** 2 + (y[:, None] - y[None, :]) ** 2
-    u, v = pairs[:, 0], pairs[:, 1]
-    nearest = np.full(len(pairs), np.inf)
-    for start in range(0, len(pairs), 4096):
-        part = slice(start, start + 4096)
-        nearest[part] = np.fmin.reduce(squared[u[part]] + squared[v[part]], axis=1)
-    return nearest < (1.0 - 1e-9) * squared[u, v]
+def _squared(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Squared distances (n, n) [m²] of ``positions`` (n, 2) [m]."""
+    x, y = np.ascontiguousarray(positions.T)
+    dx, dy = x[:, None] - x, y[:, None] - y
+    return np.asarray(dx * dx + dy * dy)

@@ -125,7 +125,7 @@ def test_our_kernels_hang_on_kernels_and_on_few_files_besides():
         besides |= compiled.sources(module) - modules
     assert besides <= {
         "protocols.compiled",
-        "protocols.topology.graphs",
+        "protocols.topology.witness",
         "fleet.motion.kernels.records",
     }
 

@@ -7,37 +7,24 @@ import math
 from fleet.motion.kernels.geometry import to_segment
 from fleet.motion.kernels.records import NOBODY, Floor, Record
 from protocols.compiled import kernel
-
-
-@kernel
-def _clamp(value, cell, count):
-    """The row or column of a coordinate [m]; what lies outside belongs to the border."""
-    return min(max(math.floor(value / cell), 0), count - 1)
+from protocols.topology.cells import enter, leave, row_of
 
 
 @kernel
 def _cell_of(grid, x, y):
-    return _clamp(y, grid.cell, grid.rows) * grid.columns + _clamp(x, grid.cell, grid.columns)
+    row = row_of(y, 0.0, grid.cell, grid.rows)
+    return row * grid.columns + row_of(x, 0.0, grid.cell, grid.columns)
 
 
 @kernel
 def put(floor: Floor, disc: int, x: float, y: float) -> None:
     """Move a disc to (x, y) [m]; NaN: take it away."""
-    grid, discs, heads = floor.grid[0], floor.discs, floor.heads
-    moved = discs[disc]
+    grid, heads, after = floor.grid[0], floor.heads, floor.discs["after"]
+    moved = floor.discs[disc]
     if not math.isnan(moved.x):
-        cell = _cell_of(grid, moved.x, moved.y)
-        if heads[cell] == disc:
-            heads[cell] = moved.after
-        else:
-            before = heads[cell]
-            while discs[before].after != disc:
-                before = discs[before].after
-            discs[before].after = moved.after
+        leave(heads, after, _cell_of(grid, moved.x, moved.y), disc)
     if not math.isnan(x):
-        cell = _cell_of(grid, x, y)
-        moved.after = heads[cell]
-        heads[cell] = disc
+        enter(heads, after, _cell_of(grid, x, y), disc)
     moved.x, moved.y = x, y
 
 
@@ -65,8 +52,8 @@ def columns_near(
         high = math.inf
     left, right = _slab(ax, ay, bx, by, low - reach, high + reach)
     return (
-        _clamp(left - reach, grid.cell, grid.columns),
-        _clamp(right + reach, grid.cell, grid.columns),
+        row_of(left - reach, 0.0, grid.cell, grid.columns),
+        row_of(right + reach, 0.0, grid.cell, grid.columns),
     )
 
 
@@ -74,8 +61,8 @@ def columns_near(
 def rows_near(grid: Record, ay: float, by: float, reach: float) -> tuple[int, int]:
     """First and last row of the cells within ``reach`` [m] of a segment."""
     return (
-        _clamp(min(ay, by) - reach, grid.cell, grid.rows),
-        _clamp(max(ay, by) + reach, grid.cell, grid.rows),
+        row_of(min(ay, by) - reach, 0.0, grid.cell, grid.rows),
+        row_of(max(ay, by) + reach, 0.0, grid.cell, grid.rows),
     )
 
 

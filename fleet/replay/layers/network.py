@@ -236,4 +236,4 @@ def _between(
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Whether w, at ``at_w`` (..., 2) [m], keeps u and v apart."""
     to_u, to_v = at_u - at_w, at_v - at_w
-    return between(u, v, w, (to_u[..., 0], to_u[..., 1]), (to_v[..., 0], to_v[..., 1]))
+    return np.asarray(between(u, v, w, (to_u[..., 0], to_u[..., 1]), (to_v[..., 0], to_v[..., 1])))
