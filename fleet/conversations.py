@@ -104,6 +104,9 @@ class Conversations:
                     self._charge(transmission, heard, 1)
         except StopIteration as end:
             award: Award = end.value
+        except BrokenProtocol as broken:
+            words.throw(broken)  # to be raised where it was said
+            raise
         finally:
             if said:
                 once = (1,) * len(said)
@@ -130,7 +133,11 @@ class Conversations:
         talk.said += 1
         if talk.said > WORDS_PER_ROBOT * len(robots):
             raise _endless(talk.task, transmission)
-        self.radio.send(transmission, now, partial(self._sent, talk, transmission))
+        try:
+            self.radio.send(transmission, now, partial(self._sent, talk, transmission))
+        except BrokenProtocol as broken:
+            talk.words.throw(broken)  # to be raised where it was said
+            raise
 
     def _sent(
         self, talk: Dialogue, transmission: Transmission, reception: Reception, now: float

@@ -7,10 +7,11 @@ from typing import NamedTuple, Protocol, TypeAlias
 
 from fleet.robot import Robot
 from protocols.messages import Heard, Point, RobotId, Transmission
+from protocols.rules import BrokenRule
 
 
-class BrokenProtocol(RuntimeError):
-    """A protocol did what no protocol may, such as sending over a link that is not there."""
+class BrokenProtocol(BrokenRule):
+    """A protocol sends over a link that is not there, or without end."""
 
 
 class Reception(NamedTuple):

@@ -112,7 +112,7 @@ def where_in(error: BaseException, folder: Path) -> str:
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         if Path(frame.filename).is_relative_to(folder):
             return f" in line {frame.lineno} of {Path(frame.filename).name}"
-    return ""
+    return where_in(error.__cause__, folder) if error.__cause__ else ""
 
 
 def _load(path: Path) -> _Loaded:

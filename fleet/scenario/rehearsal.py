@@ -6,7 +6,7 @@ itself looks at, is said before anything has begun; what goes wrong later is sai
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import dist, isnan
 from numbers import Real
@@ -14,18 +14,16 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fleet.scenario.errors import BadInput, bad, shown
-from fleet.scenario.plugins import what, where_in
+from fleet.scenario.guard import Guard, begun, described
+from fleet.scenario.plugins import what
 from fleet.scenario.reading import reason
-from fleet.scenario.watchdog import Stuck, Watch
 from protocols.messages import (
     Award,
-    Conversation,
     Event,
     Point,
     ProtocolFunction,
     RobotId,
     Transmission,
-    View,
 )
 
 T = TypeVar("T")
@@ -89,18 +87,6 @@ def _play(protocol: ProtocolFunction, called: str) -> Award:
     raise ValueError(f"it still talks after {PATIENCE} transmissions between two robots")
 
 
-def begun(words: object, called: str) -> Conversation:
-    """The conversation that a protocol has begun.
-
-    Raises:
-        BadInput: it is none.
-    """
-    if isinstance(words, Generator):
-        return words
-    said = f"{shown(called)} returns {_kind(words)}; expected a generator of transmissions"
-    raise bad("protocol", said)
-
-
 def checked(value: object, kind: type[T], verb: str, called: str) -> T:
     """What a protocol yields, or returns at its end.
 
@@ -110,45 +96,20 @@ def checked(value: object, kind: type[T], verb: str, called: str) -> T:
     if isinstance(value, kind):
         return value
     expected = f"a {kind.__name__}" if kind is Transmission else f"an {kind.__name__} at its end"
-    raise bad("protocol", f"{shown(called)} {verb} {_kind(value)}; expected {expected}")
-
-
-def _kind(value: object) -> str:
-    return "nothing" if value is None else f"{type(value).__name__} {shown(value, 40)}"
+    raise bad("protocol", f"{shown(called)} {verb} {described(value)}; expected {expected}")
 
 
 def guarded(protocol: ProtocolFunction, called: str, parts: Mapping[str, Any]) -> ProtocolFunction:
     """``protocol``, if anything of it is from a file of the user's, under guard for a whole run.
 
-    What it raises, and that it never says anything more, is bad input: one sentence with file
-    and line. ``parts`` are its name and parameters as the scenario has them.
+    What it raises, that it never says anything more, and that it breaks one of
+    :mod:`protocols.rules`, is bad input: one sentence with file and line. ``parts`` are its name
+    and parameters as the scenario has them.
     """
     files = [Path(text.rpartition(":")[0]).resolve() for text in _texts(parts) if ".py:" in text]
     if not files:
         return protocol
-    folders = [file.parent for file in files]
-    watch = Watch(folders[0])
-
-    def guard(view: View, event: Event, source: RobotId) -> Conversation:
-        heard: Any = None
-        words: Conversation | None = None
-        try:
-            while True:
-                with watch:
-                    words = words or begun(protocol(view, event, source), called)
-                    said = words.send(heard)
-                heard = yield checked(said, Transmission, "yields", called)
-        except StopIteration as end:
-            return checked(end.value, Award, "returns", called)
-        except BadInput:
-            raise
-        except (Exception, SystemExit, Stuck) as error:
-            where = next(filter(None, (where_in(error, folder) for folder in folders)), "")
-            if not where:  # none of the user's lines had a part in it
-                raise
-            raise bad("protocol", f"{shown(called)} fails{where}: {what(error)}") from error
-
-    return guard
+    return Guard(protocol, called, [file.parent for file in files])
 
 
 def _texts(value: Any) -> Iterator[str]:

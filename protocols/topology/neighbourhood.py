@@ -12,7 +12,7 @@ import numpy as np
 from protocols.compiled import direct
 from protocols.messages import Point, RobotId
 from protocols.topology.cells import cells_over
-from protocols.topology.relinking import GABRIEL, RNG, UDG, Links, relink, relink_all
+from protocols.topology.relinking import GABRIEL, RNG, UDG, Adjacency, relink, relink_all
 
 GRAPHS = {"udg": UDG, "gabriel": GABRIEL, "rng": RNG}
 
@@ -24,7 +24,7 @@ class Neighbourhood:
         n = len(positions)
         self._relink = relink
         self._cells = cells_over(positions, 0.5 * radio_range)
-        self._links = Links(
+        self._links = Adjacency(
             GRAPHS[graph],
             float(radio_range),
             np.zeros((n, 16), np.int64),

@@ -20,7 +20,7 @@ UDG, GABRIEL, RNG = 0, 1, 2
 between = kernel(witness.between)
 
 
-class Links(NamedTuple):
+class Adjacency(NamedTuple):
     """Who is linked to whom. Changed in place, by :func:`relink` alone."""
 
     graph: int  # UDG, GABRIEL or RNG
@@ -82,7 +82,7 @@ def _free(links, cells, u, v, count):
 
 
 @kernel
-def relink(links: Links, cells: Cells, robot: int, x: float, y: float) -> int:
+def relink(links: Adjacency, cells: Cells, robot: int, x: float, y: float) -> int:
     """Move ``robot`` to (x, y) [m], or off the air with NaN, and bring the links up to date.
 
     Returns the number of robots in ``links.changed``: the moved one, its neighbours, and all
@@ -150,7 +150,7 @@ def relink(links: Links, cells: Cells, robot: int, x: float, y: float) -> int:
 
 @kernel
 def relink_all(
-    links: Links,
+    links: Adjacency,
     cells: Cells,
     start: int,
     robots: IntArray,

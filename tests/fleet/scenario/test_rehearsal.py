@@ -59,8 +59,8 @@ def mine(tmp_path_factory):
         ("one", "takes 1 positional argument but 3 were given"),
         ("NotCalled", "not callable"),
         ("returns", "returns int 17; expected a generator of transmissions"),
-        ("yields", "yields int 5; expected a Transmission"),
-        ("ends", "returns nothing; expected an Award at its end"),
+        ("yields", "it yields 5; expected a Transmission"),
+        ("ends", "it ends with None; expected an Award"),
         ("breaks", "fails in line 21 of mine.py: ZeroDivisionError: division by zero"),
         ("talks", "it still talks after 10000 transmissions between two robots"),
     ],
@@ -80,7 +80,7 @@ def test_a_metric_is_tried_out_too(mine):
 @pytest.mark.parametrize(("name", "said"), [("nothing", "nan"), ("words", "'cheap'")])
 def test_bids_are_numbers(mine, name, said):
     chosen = {"name": "rfta2", "metric": f"{mine}:{name}"}
-    with pytest.raises(BadInput, match=f"a bid's cost is {said}; expected a number"):
+    with pytest.raises(BadInput, match=f"bids {said}; expected a number"):
         fleet.run(fleet.Scenario.of(protocol=chosen, motion="straight"))
 
 
