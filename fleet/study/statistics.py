@@ -34,6 +34,7 @@ class Difference(NamedTuple):
     effect: float  # Cohen's d of the pairs
     pairs: int
     chance: float = nan  # p of as large a mean difference by chance, of Student's paired test
+    deviation: float = nan  # standard deviation of the differences
 
 
 class Survival(NamedTuple):
@@ -58,13 +59,13 @@ def mean_interval(
 ) -> Interval:
     """The mean and its t interval: exact for normal values, good for means of many others.
 
-    The part of it that is ``possible`` is as likely to hold the mean as all of it. Of values that
-    are 0 or 1 each, where nothing else is possible, it is Wilson's.
+    The part of it that is ``possible`` is as likely to hold the mean as all of it. Of shares
+    that are 0 or 1 each it is Wilson's.
     """
     from scipy.special import stdtrit
 
     sample = np.asarray(values, float)
-    if possible == (0.0, 1.0) and len(sample) > 1 and np.isin(sample, (0.0, 1.0)).all():
+    if possible == (0.0, 1.0) and {*sample.tolist()} == {0.0, 1.0}:
         return wilson_interval(int(sample.sum()), len(sample), confidence)
     if len(sample) == 0:
         return Interval(nan, nan, nan)
@@ -119,7 +120,9 @@ def paired_difference(
     mean = float(differences.mean())
     low, high = _bca(differences, confidence, seed)
     effect = cohens_d(differences)
-    return Difference(mean, low, high, effect, len(differences), _chance(effect, len(differences)))
+    pairs = len(differences)
+    deviation = float(differences.std(ddof=1)) if pairs > 1 else nan
+    return Difference(mean, low, high, effect, pairs, _chance(effect, pairs), deviation)
 
 
 def cohens_d(differences: ArrayLike) -> float:

@@ -8,7 +8,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from fleet.scenario.errors import BadInput, or_list, shown, unknown
+from fleet.scenario.errors import BadInput, bad, or_list, shown, unknown
 from fleet.scenario.loading import CHOICES, merged
 from fleet.scenario.model import Scenario
 from fleet.scenario.paths import anchored
@@ -87,8 +87,27 @@ def study_from(data: Mapping[str, Any]) -> Study:
         _not_too_many(study, problems)
     if problems:
         raise BadInput(problems[:MOST_PROBLEMS])
-    assert study.resolved  # or what is wrong with a cell has been raised
+    _hold_report(study)
     return study
+
+
+def _hold_report(study: Study) -> None:
+    """See that the report will find what it is asked for, before anything runs.
+
+    Raises:
+        BadInput: it would not; or something is wrong with a cell.
+    """
+    cells = study.resolved
+    if not study.report:
+        return
+    from fleet.study.report.derived import is_measurable, measurable
+    from fleet.study.report.layout import layout
+    from fleet.study.report.runs import runs_of_rows
+
+    layout(runs_of_rows([cell.labels for cell in cells]), study.report)
+    for name in study.report.get("measures", ()):
+        if not is_measurable(name):
+            raise bad("report.measures", unknown("measure", name, measurable()))
 
 
 def _title(value: Any, problems: Problems) -> str:

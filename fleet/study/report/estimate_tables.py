@@ -93,8 +93,11 @@ def write_contrasts(path: Path, contrasts: Iterable[Contrast], layout: Layout) -
     """All paired differences, a row each."""
     _write(
         path, layout,
-        ["baseline", "measure", "difference", "low", "high", "cohens_d", "pairs", "p"],
-        ((c.cell, [layout.baseline, c.measure, *c.difference]) for c in contrasts),
+        ["baseline", "measure", "difference", "low", "high", "cohens_d", "pairs", "p", "p_holm"],
+        (
+            (c.cell, [layout.baseline, c.measure, *c.difference[:6], c.chance])
+            for c in contrasts
+        ),
     )  # fmt: skip
 
 
@@ -138,7 +141,7 @@ def _contrast(contrast: Contrast) -> TableCell:
     found = contrast.difference
     return TableCell(
         text.difference(found),
-        stressed=text.excludes_zero(found),
+        stressed=text.stands_out(found, contrast.chance),
         beside=f"d {text.effect(found)}",
         below=text.bounds(found),
     )

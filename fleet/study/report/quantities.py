@@ -11,13 +11,15 @@ from fleet.study.frame import is_numeric
 from fleet.study.report.runs import Runs
 
 MEASURES = {
-    "lifetime": "lifetime [rounds]",
+    "lifetime": "lifetime [events served]",
     "stream_response_mean": "response time, mean [s]",
     "stream_response_p90": "response time, 90 % below [s]",
+    "stream_within_deadline": "reached by the deadline [share]",
+    "served_share": "events served [share]",
     "stream_throughput": "events served [1/s]",
     "stream_utilisation": "utilisation of robots [share]",
-    "stream_energy_drained_per_served": "energy drained per event served [J]",
-    "stream_energy_predicted_per_served": "Eq. (1) per event served [J]",
+    "drained_per_served": "drained per event served [J]",
+    "messages_per_event": "messages per event",
     "messages_per_robot": "messages per robot",
     "energy_left_sd": "energy left, SD over robots [J]",
     "distance_per_robot": "distance per robot [m]",
@@ -29,6 +31,12 @@ MEASURES = {
     "energy_left_mean": "energy left per robot [J]",
     "energy_left_min": "least energy left [J]",
     "energy_predicted": "energy by Eq. (1) [J]",
+    "predicted_per_served": "Eq. (1) per event served [J]",
+    "events": "events raised",
+    "served": "events served",
+    "waiting": "events still open",
+    "expired": "events expired",
+    "lost": "events lost",
     "reactions_per_robot": "reactions per robot",
     "simulated_time": "simulated time [s]",
     "hops_greedy": "greedy hops",
@@ -52,6 +60,11 @@ AT_A_TIME = 6  # measures in a figure, unless the study names others
 
 def name_of(column: str) -> str:
     """A column's name with its unit."""
+    if column.startswith("energy_by_account_"):
+        account = column.removeprefix("energy_by_account_").removesuffix("_per_served")
+        return f"{account.replace('_', ' ')} [J]"
+    if column.startswith("lost_by_reason_"):
+        return f"lost: {column.removeprefix('lost_by_reason_').replace('_', ' ')}"
     return MEASURES.get(column) or AXES.get(column) or column.replace("_", " ")
 
 

@@ -30,6 +30,12 @@ def runs_of(table: pa.Table, labels: Sequence[str]) -> Runs:
     return Runs(columns, tuple(_axes(columns, labels)))
 
 
+def runs_of_rows(rows: Sequence[Mapping[str, Any]]) -> Runs:
+    """The runs of rows that are nothing but labels, as a study's cells."""
+    table = pa.Table.from_pylist([dict(row) for row in rows])
+    return runs_of(table, table.column_names)
+
+
 def ended(runs: Runs) -> NDArray[np.bool_]:
     """Whether each run came to the end of its network, rather than to a limit (n,)."""
     ended: NDArray[np.bool_] = runs["censored"] == "no"  # see fleet.study.frame

@@ -15,12 +15,15 @@ from matplotlib.figure import Figure
 from fleet.scenario.errors import BadInput, bad
 from fleet.study.atomic import write_text
 from fleet.study.endings import BrokenOff
+from fleet.study.frame import is_numeric
 from fleet.study.ledger import Counts, Ledger, reading
 from fleet.study.lock import sole
 from fleet.study.parquet import runs_table, side_table
 from fleet.study.report import estimate_figures as figures
 from fleet.study.report import estimate_tables as tables
 from fleet.study.report import estimates
+from fleet.study.report.conditions import conditions
+from fleet.study.report.derived import PER_SERVED, accounts, derived, uncensored
 from fleet.study.report.layout import Layout, layout
 from fleet.study.report.quantities import measures, name_of, short_name
 from fleet.study.report.runs import Runs, runs_of
@@ -31,6 +34,7 @@ from fleet.study.result import StudyResult
 T = TypeVar("T", estimates.Mean, estimates.Contrast, estimates.Curve, estimates.Energies)
 
 MOST_FACETS = 6  # figures of one kind
+OF_INTEREST = 0.05  # a difference of interest, of the baseline's mean
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +81,7 @@ def write_report(folder: Path, out: Path | None = None) -> Path:
 def _write(folder: Path, path: Path) -> Path:
     with reading(folder) as ledger:
         meta, counts, failures = ledger.meta(), ledger.counts(), ledger.failures()
-        runs = runs_of(runs_table(ledger.rows()), ledger.labels())
+        runs = derived(runs_of(runs_table(ledger.rows()), ledger.labels()))
         robots = _robots(ledger)
     _bring_up_to_date(folder)
     beside = path.parent / "report"
@@ -91,6 +95,7 @@ def _write(folder: Path, path: Path) -> Path:
         failures=failures,
         design=_design(runs),
         fixed=_fixed(runs),
+        conditions=conditions(runs),
         seeds=_seeds(runs),
         summary=_summary(runs, counts),
         source=meta.get("source") or json.dumps(study, indent=2),
@@ -112,6 +117,8 @@ def _sections(
     runs: Runs, robots: Runs | None, asked: dict[str, Any], beside: Path
 ) -> Iterator[Section]:
     plan = layout(runs, asked)
+    seen = runs
+    runs, cut_off = uncensored(runs, plan)
     chosen = measures(runs, asked.get("measures"))
     number = _Numbers()
     found = estimates.means(runs, plan, chosen)
@@ -119,7 +126,9 @@ def _sections(
         most = max(mean.runs for mean in found)
         tables.write_means(beside / "means.csv", found, plan)
         yield Section(
-            "Means", "Whiskers and ± are 95 % confidence intervals of the mean, after Student.",
+            "Means",
+            "Whiskers and ± are 95 % confidence intervals of the mean, after Student; in brackets"
+            f" where part of one would be impossible. {_of_served(chosen)}{cut_off}",
             list(_drawn(
                 "means", found, plan, figures.draw_means, f"Means over {most} runs each", beside,
                 number,
@@ -134,8 +143,9 @@ def _sections(
         yield Section(
             f"Differences from {baseline}",
             f"{_pairs(plan)} Intervals are 95 % BCa bootstrap intervals of the mean difference; d"
-            " is Cohen’s for pairs. In bold: the interval excludes 0,"
-            f" if there are {FEWEST_PAIRS} pairs or more.",
+            f" is Cohen’s for pairs. In bold: a difference by Student’s paired test, corrected for"
+            f" all {len(against)} comparisons after Holm (5 %), if there are {FEWEST_PAIRS} pairs"
+            f" or more. {_needed(against, found, plan)}",
             list(_drawn(
                 "differences", against, plan, figures.draw_contrasts,
                 f"Paired differences from {baseline}", beside, number,
@@ -155,7 +165,8 @@ def _sections(
             )),
             None, "report/energy.csv",
         )  # fmt: skip
-    lives = estimates.curves(runs, plan)
+    yield from _tallies(runs, plan, beside)
+    lives = estimates.curves(seen, plan)
     if lives:
         tables.write_curves(beside / "survival.csv", lives, plan)
         yield Section(
@@ -169,6 +180,58 @@ def _sections(
             )),
             tables.curves_table(lives, plan), "report/survival.csv",
         )  # fmt: skip
+
+
+def _tallies(runs: Runs, plan: Layout, beside: Path) -> Iterator[Section]:
+    """Tables of what became of events, and of what energy went into."""
+    counted = [n for n in ("events", "served", "waiting", "expired", "lost") if n in runs.columns]
+    reasons = [n for n in runs.columns if n.startswith("lost_by_reason_")]
+    if "stream_within_deadline" in runs.columns:
+        shown = [*counted, *reasons, "stream_within_deadline", "stream_response_mean"]
+        found = estimates.means(runs, plan, [n for n in shown if is_numeric(runs[n])])
+        tables.write_means(beside / "events.csv", found, plan)
+        yield Section(
+            "What became of events",
+            "Raised = served + still open + expired + lost, in the mean of all runs. The share that"
+            " was reached by the deadline is of all events; response times are of those served.",
+            [], tables.means_table(found, plan), "report/events.csv",
+        )  # fmt: skip
+    spent = [f"{name}{PER_SERVED}" for name in accounts(runs)]
+    if spent and "drained_per_served" in runs.columns:
+        shown = ["predicted_per_served", "drained_per_served", *spent]
+        found = estimates.means(runs, plan, shown)
+        tables.write_means(beside / "accounts.csv", found, plan)
+        yield Section(
+            "What an event took",
+            "Eq. (1) on the straight lines of all trips, what the batteries lost, and what that"
+            " went into, over the events served.",
+            [], tables.means_table(found, plan), "report/accounts.csv",
+        )  # fmt: skip
+
+
+def _of_served(chosen: Sequence[str]) -> str:
+    if any("response" in name for name in chosen):
+        return "Response times are of events served only. "
+    return ""
+
+
+def _needed(
+    against: Sequence[estimates.Contrast], base: Sequence[estimates.Mean], plan: Layout
+) -> str:
+    """How many more seeds a difference of interest would need, measure by measure."""
+    needed = estimates.pairs_for(against, base, plan.baseline, OF_INTEREST)
+    there = min(contrast.difference.pairs for contrast in against)
+    said = [
+        f"{short_name(name)} {pairs:.0f}"
+        + (f" ({pairs - there:.0f} more)" if pairs > there else " (there are enough)")
+        for name, pairs in needed.items()
+    ]
+    if not said:
+        return ""
+    return (
+        f"To show a difference of {OF_INTEREST:.0%} of the baseline’s mean, four times out of five"
+        f" and looked at alone, takes so many seeds: {', '.join(said)}."
+    )
 
 
 def _pairs(plan: Layout) -> str:

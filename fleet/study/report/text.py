@@ -11,7 +11,7 @@ FEWEST_PAIRS = 6  # of which all on one side are as rare as 3 in 100
 
 
 def estimate(interval: Interval) -> str:
-    """A mean with half the width of its interval: ``391.2 ± 8.7``."""
+    """A mean with half the width of its interval: ``391.2 ± 8.7``; lopsided ones as bounds."""
     value, low, high = interval
     if not isfinite(value):
         return "–"
@@ -19,7 +19,9 @@ def estimate(interval: Interval) -> str:
     if not isfinite(half) or half == 0.0:
         return plain(value)
     digits = _digits(half)
-    return f"{value:.{digits}f} ± {half:.{digits}f}"
+    if abs(high + low - 2.0 * value) > 0.02 * half:
+        return f"{value:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]".replace("-", "−")
+    return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
 
 
 def difference(found: Difference) -> str:
@@ -45,9 +47,9 @@ def plain(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def excludes_zero(found: Difference) -> bool:
-    """Whether the interval says that there is a difference; of too few pairs it cannot."""
-    return found.pairs >= FEWEST_PAIRS and (found.low > 0.0 or found.high < 0.0)
+def stands_out(found: Difference, chance: float) -> bool:
+    """Whether there is a difference, by its p for all comparisons; few pairs cannot say so."""
+    return found.pairs >= FEWEST_PAIRS and chance < 0.05
 
 
 def _digits_of(found: Difference) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -14,9 +15,11 @@ from click.testing import CliRunner
 from fleet.cli import main
 from fleet.scenario.errors import BadInput
 from fleet.study import StudyResult, run_jobs
+from fleet.study.report.csv_files import write_csv
+from fleet.study.report.derived import derived, possible, uncensored
 from fleet.study.report.layout import layout
 from fleet.study.report.quantities import measures
-from fleet.study.report.runs import ended, runs_of
+from fleet.study.report.runs import Runs, ended, runs_of
 from fleet.study.report.study_report import write_report
 from fleet.study.statistics import mean_interval, paired_difference
 from fleet.study.sweeping import sweep
@@ -97,8 +100,18 @@ def test_colours_are_the_page_s_own(folder):
     assert "#0072b2" not in svg.lower()
 
 
+def with_shares(folder):
+    """The rows, with what the report works out of them."""
+    rows = StudyResult(folder).table().to_pylist()
+    for row in rows:
+        row["served_share"] = row["served"] / row["events"]
+        row["drained_per_served"] = row["energy_drained"] / row["served"]
+        row["messages_per_event"] = row["messages"] / row["events"]
+    return rows
+
+
 def test_means_are_those_of_the_runs(folder):
-    runs = StudyResult(folder).table().to_pylist()
+    runs = with_shares(folder)
     means = read(folder / "report" / "means.csv")
     assert len(means) == 6 * len({row["measure"] for row in means})
     for row in means:
@@ -108,14 +121,14 @@ def test_means_are_those_of_the_runs(folder):
             if run["protocol"] == row["protocol"]
             and run["search_radius"] == float(row["search_radius"])
         ]
-        expected = mean_interval(values)
+        expected = mean_interval(values, possible(row["measure"]))
         found = [float(row[name]) for name in ("mean", "low", "high")]
         assert found == pytest.approx(list(expected))
         assert int(row["runs"]) == 5
 
 
 def test_differences_are_paired_by_seed(folder):
-    runs = StudyResult(folder).table().to_pylist()
+    runs = with_shares(folder)
     for row in read(folder / "report" / "differences.csv"):
         assert (row["protocol"], row["baseline"]) == ("gfgf2a", "rfta2")
 
@@ -127,7 +140,7 @@ def test_differences_are_paired_by_seed(folder):
                 == (protocol, float(row["search_radius"]))
             ]
 
-        expected = paired_difference(of("gfgf2a"), of("rfta2"))
+        expected = paired_difference(of("gfgf2a"), of("rfta2"))[:6]
         found = [float(row[n]) for n in ("difference", "low", "high", "cohens_d", "pairs", "p")]
         assert found == pytest.approx(list(expected), nan_ok=True)
 
@@ -273,3 +286,118 @@ def test_the_command_refuses_a_folder_without_a_study(tmp_path):
     done = CliRunner().invoke(main, ["report", str(tmp_path)])
     assert done.exit_code == 2
     assert "holds no study" in done.stderr
+
+
+STREAMS = {
+    "scenario": {
+        "motion": "straight", "robots": 40, "range": 3.0, "radio": {"name": "lossy", "loss": 0.2},
+        "time": {"name": "stream", "rate": 1.0, "duration": 30.0, "deadline": 20.0},
+        "robot": {"capacity": 90.0, "extra": {"idle": 0.5}}, "faults": {"motor_rate": 1e-3},
+    },
+    "axes": {"protocol": ["rfta2", "gfgf2a"]},
+    "seeds": 4,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def streams(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("streams")
+    sweep(STREAMS, folder, workers=1)
+    write_report(folder)
+    return folder
+
+
+def test_the_head_lists_every_setting_that_is_not_the_default(streams):
+    text = re.sub(r"<[^>]+>", "", (streams / "report.html").read_text())
+    said = re.search(r"not the default(.*)", text)[1]
+    for setting in (
+        "motion straight", "radio lossy", "radio.loss 0.2", "time stream", "time.deadline 20.0",
+        "time.duration 30.0", "robot.capacity 90.0", "robot.extra.idle 0.5",
+        "faults.motor_rate 0.001", "robots 40",
+    ):  # fmt: skip
+        assert setting in said
+    assert "protocol" not in said
+    assert "seed" not in said
+    assert "robot.mass" not in said
+
+
+def test_what_became_of_events_and_of_energy_adds_up(streams):
+    runs = StudyResult(streams).table().to_pylist()
+    events = read(streams / "report" / "events.csv")
+    spent = read(streams / "report" / "accounts.csv")
+    for protocol in ("rfta2", "gfgf2a"):
+        mine = [run for run in runs if run["protocol"] == protocol]
+        told = {r["measure"]: float(r["mean"]) for r in events if r["protocol"] == protocol}
+        assert told["events"] == pytest.approx(np.mean([run["events"] for run in mine]))
+        assert told["events"] == pytest.approx(
+            told["served"] + told["waiting"] + told["expired"] + told["lost"]
+        )
+        assert 0.0 <= told["stream_within_deadline"] <= 1.0
+        took = {r["measure"]: float(r["mean"]) for r in spent if r["protocol"] == protocol}
+        drained = np.mean([run["energy_drained"] / run["served"] for run in mine])
+        assert took["drained_per_served"] == pytest.approx(drained)
+        accounts = [v for name, v in took.items() if name.startswith("energy_by_account_")]
+        assert sum(accounts) == pytest.approx(drained, rel=1e-6)
+        assert took["drained_per_served"] > 1.5 * took["predicted_per_served"]  # idle robots
+
+
+def test_no_interval_of_a_report_holds_what_cannot_be(streams):
+    for name in ("means", "events", "accounts"):
+        for row in read(streams / "report" / f"{name}.csv"):
+            low, high = possible(row["measure"])
+            assert not float(row["low"]) < low
+            assert not float(row["high"]) > high
+
+
+def test_messages_of_each_event_are_beside_those_of_each_robot():
+    runs = some_runs(
+        messages=[30, 10, 20, 40, 50, 60], events=[3, 1, 2, 4, 5, 6], served=[1] * 6,
+        energy_drained=[1.0] * 6, energy_predicted=[1.0] * 6,
+    )  # fmt: skip
+    assert derived(runs)["messages_per_event"].tolist() == [10.0] * 6
+
+
+def test_lifetimes_that_were_cut_off_are_not_taken_for_short_ones():
+    runs = some_runs(
+        lifetime=[4.0, 9.0, 6.0, 5.0, 9.0, 9.0],
+        censored=np.array(["no", "yes", "no", "no", "yes", "yes"], object),
+    )
+    plan = layout(runs, {"series": "protocol"})
+    changed, said = uncensored(Runs(runs.columns, ("protocol",)), layout_of(plan))
+    assert changed["lifetime"].tolist() == [4.0, 9.0, 6.0, 5.0, 9.0, 9.0]  # none before 9
+    assert said.startswith("3 of 6 runs were cut off")
+    early = some_runs(
+        lifetime=[4.0, 2.0, 6.0, 5.0, 9.0, 9.0],
+        censored=np.array(["no", "yes", "no", "no", "yes", "yes"], object),
+    )
+    changed, _ = uncensored(Runs(early.columns, ("protocol",)), layout_of(plan))
+    assert changed["lifetime"][:3].mean() == pytest.approx(5.0)  # not 4: the second went on
+
+
+def layout_of(plan):
+    """The layout with nothing but series."""
+    return replace(plan, x=None, facets=())
+
+
+@pytest.mark.parametrize(
+    ("report", "said"),
+    [
+        ({"baseline": "rfta22"}, "report.baseline: unknown value 'rfta22'; did you mean 'rfta2'"),
+        ({"measures": ["lifetim"]}, "report.measures: unknown measure 'lifetim'"),
+        ({"x": "protocol"}, "report.x: is 'protocol', whose values are names"),
+    ],
+)
+def test_what_a_report_cannot_show_is_refused_before_any_run(tmp_path, report, said):
+    study = {"axes": {"protocol": ["rfta2", "gfgf2a"]}, "report": report}
+    with pytest.raises(BadInput, match=re.escape(said)):
+        sweep(study, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_text_that_a_spreadsheet_would_compute_is_escaped(tmp_path):
+    path = tmp_path / "x.csv"
+    write_csv(path, ["=a", "b"], [["=1+1", -2.5], ["@x", "-0.5"], ["+cmd|x", "\tx"]])
+    assert [list(row.values()) for row in read(path)] == [
+        ["'=1+1", "-2.5"], ["'@x", "-0.5"], ["'+cmd|x", "'\tx"]
+    ]  # fmt: skip
+    assert path.read_text().startswith("'=a,b")
