@@ -78,9 +78,10 @@ class Energies:
 def means(runs: Runs, layout: Layout, measures: Sequence[str]) -> list[Mean]:
     """The mean and its interval, for every cell and measure."""
     return [
-        Mean(cell, measure, len(group), mean_interval(_finite(group[measure]), possible(measure)))
+        Mean(cell, measure, len(values), mean_interval(values, possible(measure)))
         for cell, group in _cells(runs, layout)
         for measure in measures
+        for values in [_finite(group[measure])]
     ]
 
 
