@@ -1,4 +1,4 @@
-"""AAP: the auction area adapts to how dense and how capable the neighbourhood is.
+"""After AAP: the auction area adapts to how dense and how capable the neighbourhood is.
 
 Reference: an adaptive auction protocol for task assignment in multi-hop wireless actuator
 networks, International Journal of Distributed Sensor Networks, 2020

@@ -174,14 +174,39 @@ def aggregate(auctioneer: RobotId, tree: Tree, offers: list[Bid]) -> Part:
     arrived: list[Bid] = []
     for robot in reversed(tree):  # the farthest first
         bid = best.get(robot)
-        if bid is None or not (yield Transmission("bid", robot, tree[robot], bid)):
-            continue
-        above = tree[robot]
-        if above == auctioneer:
-            arrived.append(bid)
-        else:
-            best[above] = min(bid, best.get(above, bid))
+        if bid is not None and (yield Transmission("bid", robot, tree[robot], bid)):
+            _pass_on(bid, tree[robot], auctioneer, best, arrived)
     return arrived
+
+
+def add_up(
+    auctioneer: RobotId, tree: Tree, offers: list[Bid]
+) -> Generator[Transmission, Heard, tuple[int, list[Bid]]]:
+    """As :func:`aggregate`, but everybody answers, with a bid or with none, and says for how many.
+
+    Returns how many that were, as far as the auctioneer was told, and the bids.
+    """
+    best = {bid.robot: bid for bid in offers}
+    below: dict[RobotId, int] = {}  # that answered by way of each
+    arrived: list[Bid] = []
+    for robot in reversed(tree):
+        bid, above = best.get(robot), tree[robot]
+        if not (yield Transmission("bid", robot, above, bid)):
+            continue
+        below[above] = below.get(above, 0) + below.get(robot, 0) + 1
+        if bid is not None:
+            _pass_on(bid, above, auctioneer, best, arrived)
+    return below.get(auctioneer, 0), arrived
+
+
+def _pass_on(
+    bid: Bid, above: RobotId, auctioneer: RobotId, best: dict[RobotId, Bid], arrived: list[Bid]
+) -> None:
+    """A bid has come to the robot above: to the auctioneer, or to who will pass on the best."""
+    if above == auctioneer:
+        arrived.append(bid)
+    else:
+        best[above] = min(bid, best.get(above, bid))
 
 
 def award(auctioneer: RobotId, tree: Tree, bids: list[Bid]) -> Auction:

@@ -33,11 +33,14 @@ class MetricEntry(NamedTuple):
 
 
 PROTOCOLS: dict[str, ProtocolEntry] = {
-    "aap": ProtocolEntry(aap, "doi:10.1177/1550147720932751, our reading"),
+    "aap": ProtocolEntry(
+        aap,
+        "after AAP, doi:10.1177/1550147720932751: the area from the first bids, not from its fit",
+    ),
     "assignment": ProtocolEntry(
         central.Assignment, "Jonker and Volgenant, Computing 38(4), 1987; all are known", False
     ),
-    "bfs": ProtocolEntry(flooding.bfs, f"RODAA, in {PAPER}, section 5"),
+    "bfs": ProtocolEntry(flooding.bfs, f"after RODAA as in {PAPER}, section 5: one task at a time"),
     "face": ProtocolEntry(gfgf.face, BOSE),
     "gfg": ProtocolEntry(central.gfg, f"{BOSE}; the destination from a location service", False),
     "gfgf1": ProtocolEntry(gfgf.gfgf1, f"{PAPER}, section 2.5"),
@@ -46,7 +49,9 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
     "greedy": ProtocolEntry(gfgf.greedy_only, "Finn, ISI/RR-87-180, 1987"),
     "k-saap": ProtocolEntry(flooding.k_saap, MEZEI),
     "k-sap": ProtocolEntry(flooding.k_sap, MEZEI),
-    "mia-ta": ProtocolEntry(mia_ta, f"in {PAPER}, Table 1, our reading"),
+    "mia-ta": ProtocolEntry(
+        mia_ta, f"after MIA-TA as in {PAPER}, Table 1: who cuts off no neighbour bids"
+    ),
     "optimum": ProtocolEntry(central.optimum, "a yardstick: all robots are known", False),
     "rfta1": ProtocolEntry(rfta.rfta1, f"{PAPER}, section 4.1"),
     "rfta2": ProtocolEntry(rfta.rfta2, f"{PAPER}, section 4.2"),

@@ -1,4 +1,4 @@
-"""MIA-TA: a robot whose departure would cut the network stays where it is.
+"""After MIA-TA: a robot whose departure would cut the network stays where it is.
 
 Reference: multi-robot task allocation with maintained connectivity, as described in
 Stanulovic, Mitton and Mezei, Sensors 21(18):6149, 2021, Table 1 and section 6

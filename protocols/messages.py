@@ -33,7 +33,8 @@ class Transmission(NamedTuple):
     kind: Kind
     sender: RobotId
     receiver: RobotId | None  # None: a broadcast to whoever is in range
-    bid: Bid | None = None  # what a "bid" offers, an "assign" names, a "call" wants bettered
+    bid: Bid | None = None  # what a "bid" offers, an "assign" names, a "call" wants bettered;
+    #                         a "bid" without one is the answer of somebody who has none to make
 
 
 class Move(NamedTuple):

@@ -14,7 +14,7 @@ from fleet.cli.exits import exits
 
 # A command is in the file of its name.
 COMMANDS = {
-    "check": "Check a results folder: rows, checksums, tables.",
+    "check": "Check a results folder, or a protocol or metric of yours.",
     "energy": "Test Eq. (1), energy linear in distance, against motion.",
     "list": "All that a scenario can name, with its sources.",
     "paper": "Reproduce the paper: its figures, tables and claims.",

@@ -42,7 +42,7 @@ class Guard:
         self._called = called
         self._folders = folders
         self._watch = Watch(folders[0])
-        self._knows_all = all_knowing(protocol)
+        self.all_knowing = all_knowing(protocol)
         self._view: View = ()
         self._seen: list[ReadOnlyRobot] = []
 
@@ -50,7 +50,7 @@ class Guard:
         """One conversation."""
         if view is not self._view:  # the rehearsal's robots, then the run's
             self._view, self._seen = view, [ReadOnlyRobot(robot) for robot in view]
-        conduct = Conduct(self._seen, source, knows_all=self._knows_all)
+        conduct = Conduct(self._seen, source, knows_all=self.all_knowing)
         heard: Heard | None = None
         words: Any = None
         while True:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from hand_drawn import PER_METRE, Still, converse, network
+from hand_drawn import PER_METRE, StillRobot, converse, network
 
 from protocols.auctions import AuctionRules
 from protocols.auctions import auction as hold
@@ -66,7 +66,7 @@ def test_nobody_can_go():
 def test_a_robot_that_finds_no_way_does_not_bid():
     view = energies(100, 60, 70, 90, 50, 100, 100)
     walled = view[3]
-    view[3] = Still(3, walled.position, 90.0, walled.neighbours, unreachable=(EVENT.position,))
+    view[3] = StillRobot(3, walled.position, 90.0, walled.neighbours, unreachable=(EVENT.position,))
     assert auction(view).award.winner == 2
 
 

@@ -76,7 +76,7 @@ def test_face_changes_faces_along_the_line():
 
 def test_gfg_goes_straight_to_the_nearest_that_can():
     view = network(HOOK, 1.05, energy=[100] * 8 + [5])
-    talk = converse(gfg, view, SITE, 1, local=False)
+    talk = converse(gfg, view, SITE, 1)
     assert talk.award.winner == 7
     assert talk.route == [2, 1, 0, 3, 4, 5, 6, 7]
 
@@ -165,7 +165,7 @@ def test_optimum_is_the_best_of_all():
     view = network(random_points(30, 9.0, rng), 2.0, energy=rng.uniform(0, 80, 30))
     site = (4.0, 4.0)
     able = [robot for robot in view if robot.energy >= robot.cost_to(site)]
-    talk = converse(optimum, view, site, 3, local=False)
+    talk = converse(optimum, view, site, 3)
     assert talk.award.winner == min(able, key=lambda r: dist(r.position, site)).id
     assert talk.transcript == []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 import pytest
-from hand_drawn import PER_METRE, Still
+from hand_drawn import PER_METRE, StillRobot
 
 from protocols.catalogue import METRICS
 from protocols.metrics import EnergyLeftMinusCost
@@ -15,7 +15,7 @@ COST = PER_METRE
 
 
 def at(distance, energy):
-    return Still(0, (1.0 - distance, 0.0), energy, {})
+    return StillRobot(0, (1.0 - distance, 0.0), energy, {})
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from functools import partial
-from math import dist
+from itertools import pairwise
+from math import cos, dist, sin
 
 import numpy as np
 import pytest
@@ -62,16 +63,47 @@ def test_the_ring_widens_while_nobody_can_go():
     assert talk.said("assign")[-1][1] == 0
 
 
-def test_a_bridge_stays_while_others_can_go():
-    """Robot 1 joins 0 to 2; it is the nearest and the fullest."""
-    line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
-    site = (1.0, 0.3)
-    sparing = partial(rfta3, spare=4)
-    talk = converse(sparing, network(line, 1.1, energy=[60, 100, 70]), site, 1)
-    assert talk.award.winner == 2
-    assert converse(rfta3, network(line, 1.1, energy=[60, 100, 70]), site, 1).award.winner == 1
-    alone = converse(sparing, network(line, 1.1, energy=[1, 100, 1]), site, 1)
-    assert alone.award.winner == 1  # nobody else can: then it goes
+def rings(talk):
+    """How many robots called each time that the auctioneer did."""
+    calls = [t.sender for t, _ in talk.transcript if t.kind == "call"]
+    starts = [k for k, sender in enumerate(calls) if sender == calls[0]] + [len(calls)]
+    return [end - start for start, end in pairwise(starts)]
+
+
+def test_the_ring_doubles_twice_and_then_takes_in_everybody():
+    line = [(float(x), 0.0) for x in range(20)]
+    view = network(line, 1.1, energy=[*[1.0] * 19, 1e4])
+    talk = converse(rfta3, view, (-0.5, 0.0), 0)
+    assert talk.award.winner == 19
+    assert rings(talk) == [1, 2, 4, 20]
+
+
+@pytest.mark.parametrize(("robots", "carried"), [(2, True), (9, True), (10, False), (30, False)])
+def test_a_component_of_fewer_than_carry_carries_on(robots, carried):
+    line = [(0.9 * x, 0.0) for x in range(robots)]
+    talk = converse(rfta3, network(line, 1.0, energy=30.0), (-90.0, 0.0), 0)
+    assert talk.award.winner is None
+    assert bool(talk.award.moves) == carried
+    assert not converse(partial(rfta3, carry=robots), network(line, 1.0, energy=30.0),
+                        (-90.0, 0.0), 0).award.moves  # fmt: skip
+
+
+def test_a_small_component_answers_and_a_large_one_is_not_asked_to():
+    """Who knows of nine others by its own table need not have anybody counted."""
+    line = [(0.9 * x, 0.0) for x in range(3)]
+    talk = converse(rfta3, network(line, 1.0, energy=1.0), (-90.0, 0.0), 0)
+    answers = [t for t, _ in talk.transcript if t.kind == "bid"]
+    assert [t.sender for t in answers] == [2, 1, 2, 1]  # two more, and then nobody new
+    assert all(t.bid is None for t in answers)
+    star = [(0.0, 0.0), *((cos(k), sin(k)) for k in range(1, 11))]
+    talk = converse(rfta3, network(star, 1.0, "udg", 1.0), (0.0, 0.2), 0)
+    assert talk.award.winner is None
+    assert talk.said("bid") == []
+
+
+def test_who_knows_of_nobody_calls_once():
+    talk = converse(rfta3, network([(0.0, 0.0)], 1.0, energy=1.0), (-90.0, 0.0), 0)
+    assert talk.said("call") == [(0, None)] * 2  # for the event, and for who would carry it
 
 
 def test_a_splinter_carries_the_event_towards_it():

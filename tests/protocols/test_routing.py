@@ -6,7 +6,7 @@ from math import dist
 
 import numpy as np
 import pytest
-from hand_drawn import Still, network, random_connected, random_points, routed
+from hand_drawn import StillRobot, network, random_connected, random_points, routed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -74,7 +74,7 @@ def test_published_network(hand, route):
     assert [names[robot] for robot in talk.route] == route
 
 
-def nearest(view: list[Still], site: Point) -> float:
+def nearest(view: list[StillRobot], site: Point) -> float:
     return min(dist(robot.position, site) for robot in view)
 
 
@@ -83,7 +83,7 @@ def sparse_networks(count: int, seed: int):
     rng = np.random.default_rng(seed)
     for _ in range(count):
         side = (100 * np.pi / rng.uniform(6.6, 7.6)) ** 0.5  # borders take some off
-        yield network(random_connected(100, side, 1.0, rng), 1.0, compiled=True), side, rng
+        yield network(random_connected(100, side, 1.0, rng), 1.0), side, rng
 
 
 def check_delivery(count: int, seed: int) -> None:
