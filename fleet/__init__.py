@@ -6,9 +6,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
+TYPE_CHECKING = False  # typing's, which takes its time to import
 if TYPE_CHECKING:
+    from typing import Any
+
     from fleet.assembly import run
     from fleet.observer import Observer
     from fleet.playthrough import Playthrough, play
