@@ -22,6 +22,7 @@ COMMANDS = {
     "replay": "Run one run of a study again, from its key.",
     "report": "Write the figures and tables of a study as a page.",
     "run": "Play one run and print its summary.",
+    "schema": "Print what may stand in a scenario or study file, for editors.",
     "sweep": "Run a study: every combination with every seed.",
     "view": "Open recordings in the Rerun viewer.",
 }

@@ -82,7 +82,7 @@ def convert(kind: Any, value: Any, key: str) -> Any:
     """
     if kind == Metric:
         return metric(value, key)
-    if (columns := _columns(kind)) is not None:
+    if (columns := columns_of(kind)) is not None:
         return numbers(value, columns, key)
     if kind is OccupancyGrid:
         return occupancy_grid(value, key)
@@ -102,7 +102,7 @@ def convert(kind: Any, value: Any, key: str) -> Any:
 
 
 @cache
-def _columns(kind: Any) -> tuple[str, ...] | None:
+def columns_of(kind: Any) -> tuple[str, ...] | None:
     """The columns of a table of numbers, or of one that may be left out; None: it is none."""
     for table in (PlaceTable, EventTable, LinkTable):
         if kind == table or kind == table | None:

@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from fleet.catalogue import CATALOGUES
+from fleet.scenario.binding import columns_of
 from worlds.occupancy import OccupancyGrid
-from worlds.shapes import EventTable, LinkTable, PlaceTable
 
 OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
 """The keys that may hold ``file.py:name``."""
-FILES = (PlaceTable, PlaceTable | None, EventTable, LinkTable, OccupancyGrid)
-"""What is read from a file, if a text stands for it."""
 
 
 @cache
@@ -26,8 +24,13 @@ def path_keys() -> frozenset[str]:
         for choice in ("world", "events", "radio")
         for entry in CATALOGUES[choice].values()
         for parameter in inspect.signature(entry.function, eval_str=True).parameters.values()
-        if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation in FILES
+        if parameter.kind is parameter.KEYWORD_ONLY and is_file_type(parameter.annotation)
     )
+
+
+def is_file_type(kind: Any) -> bool:
+    """Whether a value of that type is read from a file, if a text stands for it."""
+    return kind is OccupancyGrid or columns_of(kind) is not None
 
 
 def anchored(value: Any, folder: Path, key: str = "") -> Any:

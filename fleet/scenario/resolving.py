@@ -43,7 +43,7 @@ def _filled(function: Callable[..., Any], given: Mapping[str, Any]) -> dict[str,
     for parameter in inspect.signature(function, eval_str=True).parameters.values():
         if parameter.kind is not parameter.KEYWORD_ONLY:
             continue
-        default = _written(parameter.default)
+        default = written(parameter.default)
         value = given.get(parameter.name, default)
         if isinstance(value, Mapping) and isinstance(default, Mapping):
             value = {**default, **value}
@@ -52,7 +52,7 @@ def _filled(function: Callable[..., Any], given: Mapping[str, Any]) -> dict[str,
     return found
 
 
-def _written(default: Any) -> Any:
+def written(default: Any) -> Any:
     """A default as a file has it: a metric by its name, values as tables."""
     for name, entry in METRICS.items():
         if default is entry.function:

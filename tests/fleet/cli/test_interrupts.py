@@ -41,11 +41,11 @@ def check(code, said, *, may_be_done=False):
 
 @pytest.mark.parametrize(
     "name",
-    ["click", "fleet.cli", "fleet.cli.exits", "fleet.assembly", "pydantic", "rich", "scipy"],
+    ["click", "fleet.cli", "fleet.cli.exits", "fleet.assembly", "pydantic", "rich"],
 )
 def test_while_something_is_imported(name):
     code = WAITING.format(name=name, arguments=["run", "--motion", "straight", "--rounds", "3"])
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
     check(done.returncode, done.stderr)
 
 
