@@ -13,16 +13,12 @@ from math import isfinite
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
-from fleet.modes import TIMINGS
-from fleet.motion.motions import MOTIONS
-from fleet.radio.catalogue import RADIOS
+from fleet.catalogue import takers
 from fleet.robot import PRESETS, RobotSpec
 from fleet.scenario.binding import adapter, columns_of, field_types, keywords, required
 from fleet.scenario.model import Choice, Scenario
 from fleet.scenario.resolving import written
-from protocols.catalogue import METRICS, PROTOCOLS
 from protocols.metrics import Metric
-from worlds.catalogue import EVENTS, WORLDS
 from worlds.occupancy import OccupancyGrid
 
 Schema = dict[str, Any]
@@ -33,9 +29,8 @@ OWN = {"type": "string", "pattern": r"\.py:\w+$", "description": "file.py:name, 
 
 def scenario_schema() -> Schema:
     """The schema of a scenario file."""
-    functions = {key: catalogue_functions(key) for key in CATALOGUES}
     keys = {
-        name: choice_schema(functions[name], own=name == "protocol")
+        name: choice_schema(takers(name), own=name == "protocol")
         if kind is Choice
         else {**type_schema(kind), **_default(written(getattr(Scenario(), name)))}
         for name, kind in field_types(Scenario).items()
@@ -44,24 +39,6 @@ def scenario_schema() -> Schema:
     robot["properties"]["preset"] = {"enum": sorted(PRESETS)}
     keys["robot"] = {"anyOf": [{"enum": sorted(PRESETS)}, robot]}
     return {"$schema": DIALECT, "title": "A scenario of talking-fleet", **table_schema(keys)}
-
-
-CATALOGUES: Mapping[str, Mapping[str, Any]] = {
-    "protocol": PROTOCOLS,
-    "world": WORLDS,
-    "motion": MOTIONS,
-    "time": TIMINGS,
-    "events": EVENTS,
-    "radio": RADIOS,
-}
-
-
-def catalogue_functions(key: str) -> dict[str, Callable[..., Any]]:
-    """What takes the parameters of each choice, by its name."""
-    return {
-        name: getattr(entry, "options", None) or entry.function
-        for name, entry in CATALOGUES[key].items()
-    }
 
 
 def choice_schema(functions: Mapping[str, Callable[..., Any]], *, own: bool = False) -> Schema:
@@ -82,7 +59,7 @@ def choice_schema(functions: Mapping[str, Callable[..., Any]], *, own: bool = Fa
 def type_schema(kind: Any) -> Schema:
     """The schema of a value of that type, as a file has it."""
     if kind == Metric:
-        return choice_schema({name: e.function for name, e in METRICS.items()}, own=True)
+        return choice_schema(takers("metric"), own=True)
     if kind is OccupancyGrid:
         return {"type": "string", "description": "the file of a map"}
     if (columns := columns_of(kind)) is not None:

@@ -10,12 +10,13 @@ import jsonschema
 import nasty
 import pytest
 
+from fleet.catalogue import takers
 from fleet.scenario.binding import required
 from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import load_scenario
 from fleet.scenario.model import Scenario
 from fleet.scenario.resolving import resolved
-from fleet.scenario.schema import CATALOGUES, catalogue_functions, scenario_schema
+from fleet.scenario.schema import scenario_schema
 from fleet.study.study_file import load_study
 from fleet.study.study_schema import study_schema
 
@@ -37,10 +38,10 @@ def test_the_copies_in_the_docs_are_current(kind, made):
 
 
 @pytest.mark.parametrize(
-    ("key", "name"), [(key, name) for key, names in CATALOGUES.items() for name in names]
+    ("key", "name"), [(key, name) for key in nasty.CATALOGUES for name in takers(key)]
 )
 def test_everything_with_its_defaults_is_valid(key, name):
-    choice = {"name": name, **dict.fromkeys(required(catalogue_functions(key)[name]), "a.csv")}
+    choice = {"name": name, **dict.fromkeys(required(takers(key)[name]), "a.csv")}
     whole = resolved(Scenario.of(**{key: choice}))
     assert valid(SCENARIO, json.loads(json.dumps(whole)))
     assert not valid(SCENARIO, whole | {key: {**choice, "no_such_key": 1}})
