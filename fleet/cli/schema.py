@@ -15,7 +15,7 @@ def command(kind: str) -> None:
     Copies are in docs/schema. An editor that knows TOML completes and checks a file that begins
     with a line such as "#:schema docs/schema/scenario.json".
     """
-    from fleet.scenario.schema import scenario_schema
+    from fleet.scenario.json_schema import scenario_schema
     from fleet.study.study_schema import study_schema
 
     made = scenario_schema() if kind == "scenario" else study_schema()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fleet.scenario.schema import DIALECT, Schema, scenario_schema, table_schema
+from fleet.scenario.json_schema import DIALECT, Schema, scenario_schema, table_schema
 from fleet.study.side_tables import TABLES
 
 

@@ -16,7 +16,7 @@ from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import load_scenario
 from fleet.scenario.model import Scenario
 from fleet.scenario.resolving import resolved
-from fleet.scenario.schema import scenario_schema
+from fleet.scenario.json_schema import scenario_schema
 from fleet.study.study_file import load_study
 from fleet.study.study_schema import study_schema
 
