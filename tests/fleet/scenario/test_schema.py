@@ -13,10 +13,10 @@ import pytest
 from fleet.catalogue import takers
 from fleet.scenario.binding import required
 from fleet.scenario.errors import BadInput
+from fleet.scenario.json_schema import scenario_schema
 from fleet.scenario.loading import load_scenario
 from fleet.scenario.model import Scenario
 from fleet.scenario.resolving import resolved
-from fleet.scenario.json_schema import scenario_schema
 from fleet.study.study_file import load_study
 from fleet.study.study_schema import study_schema
 
