@@ -67,8 +67,13 @@ def functions_of(scenario: Scenario) -> dict[str, Callable[..., Any]]:
     }
 
 
+OTHER_WORDS = {"speed": "cruise", "velocity": "cruise", "battery": "capacity", "energy": "capacity"}
+"""What others call our keys."""
+
+
 def homes(name: str) -> Iterator[str]:
     """The tables of a scenario that have a key of that name, as ``table.name``."""
+    name = OTHER_WORDS.get(name, name)
     for table in ("protocol", "world", "motion", "time", "radio", "events"):
         if any(name in keywords(function) for function in takers(table).values()):
             yield f"{table}.{name}"

@@ -39,7 +39,7 @@ def load_object(reference: str, key: str) -> Any:
         names = [n for n, v in vars(module).items() if callable(v) and not n.startswith("_")]
         if not names:
             raise bad(key, f"{shown(str(path))} has no {shown(name)}, and no function at all")
-        raise bad(key, unknown(f"name in {shown(str(path))}", name, names))
+        raise bad(key, f"{shown(str(path))}: {unknown('name', name, names)}")
     found = getattr(module, name)
     if not callable(found):
         raise bad(key, f"{shown(reference)} is of type {type(found).__name__}; expected a function")

@@ -183,7 +183,7 @@ def test_a_metric_of_the_user_s_own(mine):
 @pytest.mark.parametrize(
     ("reference", "said"),
     [
-        ("{}:whoever_herd", "unknown name in"),
+        ("{}:whoever_herd", "unknown name 'whoever_herd'"),
         ("{}:whoever_herd", "did you mean 'whoever_heard'?"),
         ("{}:number", "is of type int; expected a function"),
         ("{}", "names no object; expected file.py:name"),
