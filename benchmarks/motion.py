@@ -2,9 +2,9 @@
 
 A lifetime's work is what RFTA2 sends 100 robots of radius 0.1 m to do, at a step of 1/60 s. It
 is driven by this project; by a plain program over pymunk's public interface, along the same
-paths by the same params; and, for the floor, the engine alone makes as many steps with one body
-moving. Then come the figures that must hold: who arrives, what touches, who waits, and what the
-step does to the energy. Aims stand in brackets.
+paths by the same profile, its bodies told their velocities; and, for the floor, the engine alone
+makes as many steps with one body moving. Then come the figures that must hold: who arrives, what
+touches, who waits, and what the step does to the energy. Aims stand in brackets.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 from functools import cache
-from math import cos, dist, inf, pi, sin, sqrt
+from math import cos, dist, fsum, inf, pi, sin, sqrt
 from pathlib import Path
 from statistics import fmean, median
 from time import process_time
@@ -71,7 +71,7 @@ def crew(points, headings, arena=None, *, engine=True, spec=SPEC, **options):
 
 @cache
 def engine_steps(seed):
-    """In how many steps of a lifetime the engine is called: not while robots turn on the spot."""
+    """In how many steps of a lifetime the engine is called."""
     wanted, made = work(seed), 0
     motion, robots = crew(wanted.points, wanted.headings, dt=DT, bridge=False)
     step = motion._engine.step
@@ -162,7 +162,6 @@ def print_speed(seeds):
                 floor.append(bare_steps(engine_steps(seed)))
             if half == 0:
                 plain = plain_lifetime(seed)
-        assert {run[1:] for run in physics} == {run[1:] for run in path}
         ours, without = (median(run[0] for run in runs) for runs in (physics, path))
         rows.append((ours, without, plain[0], median(floor), plain[2] / physics[0][2]))
     ours, without, slow, floor, same = np.array(rows).T
@@ -275,11 +274,7 @@ def print_energy():
             motion.depart(robots[robot], site)
             trips += [trip for trip in motion.advance(inf) if trip.energy]
         found.append(np.array([trip.energy for trip in trips]))
-        parts = [
-            trip.energy_path + trip.energy_ramps + trip.energy_pivots
-            + trip.energy_waiting + trip.energy_contact
-            for trip in trips
-        ]  # fmt: skip
+        parts = [fsum(trip.accounts) for trip in trips]
     off = np.abs(found[0] / found[1] - 1.0)
     split = np.abs(np.array(parts) / found[1] - 1.0).max()
     print("energy of a trip:")

@@ -1,7 +1,7 @@
 """What one writes first: robots driven over pymunk's public interface, by a loop in Python.
 
 The measure that ``motion.py`` takes of physics. It drives along the paths of this project's
-planner, by the same params: a turn on the spot, then a trapezoidal profile, steered by feedback.
+planner, by the same profile: a turn on the spot, then a trapezoidal profile, steered by feedback.
 """
 
 from __future__ import annotations

@@ -42,7 +42,17 @@ from worlds.ground import Ground, ground_of
 from worlds.sensors import deploy
 from worlds.shapes import Corner
 
-STREAMS = ("placement", "sites", "collector", "heading", "times", "radio", "faults", "sensors")
+STREAMS = (
+    "placement",
+    "sites",
+    "collector",
+    "heading",
+    "times",
+    "radio",
+    "faults",
+    "sensors",
+    "builds",
+)
 """Independent random streams of a run. Append only: the order decides every run."""
 
 
@@ -67,7 +77,9 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     protocol = bind_protocol(scenario)
     world = make_world(scenario.world)
     audience = Audience(observers)
-    motion = make_motion(scenario.motion, scenario.robot, world.arena, audience.sample_interval)
+    motion = make_motion(
+        scenario.motion, scenario.robot, world.arena, audience.sample_interval, random["builds"]
+    )
     solid = look_up("motion", scenario.motion.name, "motion").solid
     ground = ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
     advised = advice(scenario, world.arena)

@@ -131,7 +131,7 @@ class Observer:
         """It came to rest: there, or short of it."""
 
     def moved(self, samples: NDArray[np.float64]) -> None:
-        """Poses (k, 6) of the robots under way: :data:`fleet.motion.SAMPLE_FIELDS`."""
+        """Poses (k, 8) of the robots under way: :data:`fleet.motion.SAMPLE_FIELDS`."""
 
     def relinked(self, time: float) -> None:
         """The links have been brought up to date with robots that moved."""

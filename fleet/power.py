@@ -46,8 +46,6 @@ class ExtraPower:
         ValueError: a value is negative.
     """
 
-    kinetic: bool = False  # pay the kinetic energy of every launch and get none of it back
-    per_wheel: bool = False  # each wheel takes half of P at its own speed, not at the body's
     idle: float = 0.0  # [W] of a robot that stands: parked, or waiting to set off
     transmission: float = 0.0  # [J] for each frame sent; charged by the simulation
     reception: float = 0.0  # [J] for each frame received; charged by the simulation

@@ -90,11 +90,16 @@ class RobotSpec:
 
 PRESETS: dict[str, RobotSpec] = {
     # The paper's arena at its density of robots: 100 discs of 0.1 m cover 3 % of 10 m × 10 m.
+    # Mass, cruise and power: the paper's. Scrub: round contacts of radius a = 5 mm that carry the
+    # weight and turn on the spot hold 2/3·µ·m·g·a = 0.2 N·m (Johnson, Contact Mechanics, 1985);
+    # rolling on, it fades as 1/a. Windings: resistance over the square of force per ampere, 5.95 Ω
+    # and 16 × 0.0514 N·m/A on wheels of 40 mm, Robotino 2. Motor, efficiency, traction: assumed;
+    # rubber on a floor, and motors of its size with gears.
     "small": RobotSpec(),
     # Pioneer 3-DX. Radius 250 mm: its parameter file in ARIA, p3dx.p. Mass 9 kg and turn rate
     # 300 °/s: the maker's data sheet. Acceleration 300 mm/s² and 100 °/s²: TRANSACC and ROTACC
     # as shipped, Pioneer 3 Operations Manual (2007). Track 330 mm: CoppeliaSim's model of it.
-    # Cruise and power: the paper's.
+    # Cruise and power: the paper's. Scrub: as above with contacts of 10 mm, for tyres of 195 mm.
     "pioneer": RobotSpec(
         radius=0.25,
         mass=9.0,
@@ -102,9 +107,44 @@ PRESETS: dict[str, RobotSpec] = {
         turn_rate=300.0 * pi / 180.0,
         turn_acceleration=100.0 * pi / 180.0,
         track=0.33,
+        scrub=0.4,
+    ),
+    # Clearpath Husky A200 on flooring, skid steer, from the logs of BorealTC (LaRocque et al.,
+    # IROS 2024, doi 10.1109/IROS58592.2024.10801407), whose authors give mass 70 kg, efficiency
+    # 0.7, 0.46 Ω and 27.2 N/A at the wheels' rim, before losses. Fitted: 55 N of rolling
+    # resistance and 180 N of scrub at the rim of each side, before losses; 10 W is what is left of
+    # 102 J/m straight at 0.22 m/s. Computers are not in these logs. Track: 0.89 m, as the
+    # gyroscope has it; the wheels are 0.55 m apart. Radius: around 0.99 m × 0.67 m. Motor: at
+    # 27 A, what it took on loam; more than tyres hold. Onset of scrub, accelerations: assumed.
+    "husky": RobotSpec(
+        radius=0.6,
+        mass=70.0,
+        cruise=0.5,
+        acceleration=0.5,
+        turn_rate=1.0,
+        turn_acceleration=1.0,
+        track=0.89,
+        capacity=2000.0,
+        power=PowerModel(0.0, 55.0, 10.0),
+        motor=500.0,
+        efficiency=0.7,
+        windings=0.46 / (0.7 * 27.2) ** 2,
+        scrub=0.7 * 180.0 * 0.89,
+        scrub_onset=0.4,
     ),
     # The paper's limit, with a body: Eq. (1) holds but for detours. No robot is built like this.
-    "ideal": RobotSpec(drive="holonomic", acceleration=1e4, turn_rate=1e4, turn_acceleration=1e6),
+    "ideal": RobotSpec(
+        drive="holonomic",
+        acceleration=1e4,
+        turn_rate=1e4,
+        turn_acceleration=1e6,
+        motor=1e6,
+        efficiency=1.0,
+        regeneration=1.0,
+        windings=0.0,
+        traction=1e5,
+        scrub=0.0,
+    ),
 }
 """Robots by name, for scenario files."""
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from fleet.motion import Trip
+from fleet.motion import Accounts, Trip
 
 STANDING, RADIO = "standing", "radio"  # what is paid by whoever is not under way, and for frames
-TRIP_ACCOUNTS = tuple(
-    name.removeprefix("energy_") for name in Trip._fields if name.startswith("energy_")
-)
-ACCOUNTS = (*TRIP_ACCOUNTS, STANDING, RADIO)
+ACCOUNTS = (*Accounts._fields, STANDING, RADIO)
 """What the energy of batteries goes into."""
 
 
@@ -39,5 +36,5 @@ class Tally:
 
     def pay_for(self, trip: Trip) -> None:
         """Book what a trip has cost, each part on its account."""
-        for name in TRIP_ACCOUNTS:
-            self.accounts[name] += getattr(trip, f"energy_{name}")
+        for name, energy in trip.accounts._asdict().items():
+            self.accounts[name] += energy

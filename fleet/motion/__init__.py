@@ -14,12 +14,26 @@ from protocols.messages import Point, RobotId
 Outcome = Literal["arrived", "no path", "stuck", "battery empty", "broken down", "cut off"]
 
 
-class Trip(NamedTuple):
-    """One robot's drive to one site, from departure to the end, whatever the end.
+class Accounts(NamedTuple):
+    """What a battery has paid for on a trip [J], each part by what it was lost to.
 
-    The last five say what for. Each comes from an account of its own, so that they add up to
-    ``energy`` only if nothing is forgotten. What a motion has no notion of is 0.
+    Each comes from the forces and velocities that it is about, so that they add up to what was
+    drained only if nothing is forgotten. What a motion has no notion of is 0.
     """
+
+    electronics: float = 0.0  # whatever it does
+    rolling: float = 0.0  # rolling resistance
+    viscous: float = 0.0  # resistance that grows with speed
+    scrub: float = 0.0  # tyres that turn on the spot
+    windings: float = 0.0  # heat of the motors, and the power of turning
+    braking: float = 0.0  # inertia: what was put in and taken out again, not regenerated
+    slip: float = 0.0  # wheels that spin, or slide sideways
+    contact: float = 0.0  # taken by bodies that it pushed, less what they gave
+    waiting: float = 0.0  # idle power before it could set off
+
+
+class Trip(NamedTuple):
+    """One robot's drive to one site, from departure to the end, whatever the end."""
 
     robot: RobotId
     outcome: Outcome
@@ -35,15 +49,13 @@ class Trip(NamedTuple):
     waited: float = 0.0  # before it could set off, and for others on the way [s]
     steps: int = 0  # of simulation in which it was driven
     contacts: int = 0  # times that it was pushed by another body, or pushed one
-    energy_path: float = 0.0  # Eq. (1) on the driven length [J]
-    energy_ramps: float = 0.0  # what driving took beyond that: slower, or speeding up [J]
-    energy_pivots: float = 0.0  # turning on the spot [J]
-    energy_waiting: float = 0.0  # idle power while it waited [J]
-    energy_contact: float = 0.0  # beyond Eq. (1) while it was off its path after a push [J]
+    accounts: Accounts = Accounts()  # what the energy went into
 
 
-SAMPLE_FIELDS = ("robot", "time", "x", "y", "heading", "energy")
-"""Columns of the samples that motion keeps for observers: id, s, m, m, rad, J left."""
+SAMPLE_FIELDS = ("robot", "time", "x", "y", "heading", "energy", "planned_x", "planned_y")
+"""Columns of the samples that motion keeps for observers: id, s, m, m, rad, J left, and where the
+robot should be by its plan [m].
+"""
 
 
 class Motion(Protocol):
@@ -87,7 +99,7 @@ class Motion(Protocol):
         """
 
     def samples(self) -> NDArray[np.float64]:
-        """Poses (k, 6) on the way since the last call, as :data:`SAMPLE_FIELDS`.
+        """Poses (k, 8) on the way since the last call, as :data:`SAMPLE_FIELDS`.
 
         Empty unless motion was made with a sample interval.
         """

@@ -31,10 +31,11 @@ SIGNATURES = {
     "pmSpaceBodyGetIteratorFuncBatched": "void(*)(struct cpBody *, void *)",
     "pmSpaceBodySetIteratorFuncBatched": "void(*)(struct cpBody *, void *)",
     "cpBodySetType": "void(*)(struct cpBody *, enum cpBodyType)",
+    "cpBodySetMoment": "void(*)(struct cpBody *, double)",
 }
 """What is called, in the order of the first places in ``Wires.calls``."""
 
-STEP, READ, WRITE, SET_TYPE, SPACE, HEARD, TOLD = range(7)
+STEP, READ, WRITE, SET_TYPE, SET_MOMENT, SPACE, HEARD, TOLD = range(8)
 """Places in ``Wires.calls``."""
 
 DYNAMIC, STATIC = 0, 2  # cpBodyType of a body that moves, and of a parked one
@@ -63,7 +64,7 @@ def _caller(numba_type: Any, llvm_type: Any) -> Any:
     return call
 
 
-_call_step = _caller(types.float64, ir.DoubleType())  # f(cpSpace *, double)
+_call_with_number = _caller(types.float64, ir.DoubleType())  # f(cpSpace * or cpBody *, double)
 _call_on_body = _caller(types.int64, ir.IntType(64))  # f(cpBody *, void *)
 _call_set_type = _caller(types.int32, ir.IntType(32))  # f(cpBody *, enum)
 
@@ -71,13 +72,14 @@ _call_set_type = _caller(types.int32, ir.IntType(32))  # f(cpBody *, enum)
 @kernel
 def step_space(calls: Any, dt: Any) -> None:
     """Let the space step by ``dt`` [s]."""
-    _call_step(calls[STEP], calls[SPACE], dt)
+    _call_with_number(calls[STEP], calls[SPACE], dt)
 
 
 @kernel
-def wake_body(calls: Any, body: Any) -> None:
-    """Make a parked body one that moves."""
+def wake_body(calls: Any, body: Any, inertia: Any) -> None:
+    """Make a parked body one that moves; parking has made it forget its ``inertia`` [kg·m²]."""
     _call_set_type(calls[SET_TYPE], body, np.int32(DYNAMIC))
+    _call_with_number(calls[SET_MOMENT], body, inertia)
 
 
 @kernel
@@ -87,33 +89,38 @@ def park_body(calls: Any, body: Any) -> None:
 
 
 @kernel
-def write_body(calls: Any, body: Any, numbers: Any, counts: Any, vx: Any, vy: Any) -> None:
-    """Set a body's velocity [m/s]."""
-    numbers[0], numbers[1] = vx, vy
+def write_body(
+    calls: Any, body: Any, numbers: Any, counts: Any, fx: Any, fy: Any, torque: Any
+) -> None:
+    """Push a body in the next step with a force [N] and a torque [N·m]."""
+    numbers[0], numbers[1], numbers[2] = fx, fy, torque
     counts[0] = 0
     _call_on_body(calls[WRITE], body, calls[TOLD])
 
 
 @kernel
 def read_body(calls: Any, body: Any, counts: Any) -> None:
-    """Read into ``numbers`` a body's x, y [m], and velocity in x and y [m/s]."""
+    """Read into ``numbers`` a body's x, y [m], heading [rad], velocity in x and y [m/s] and turn
+    rate [rad/s].
+    """
     counts[0] = 0
     _call_on_body(calls[READ], body, calls[HEARD])
 
 
 @kernel
-def _drive_alone(wires: Any, vx: Any, vy: Any, dt: Any) -> None:
-    wake_body(wires.calls, wires.bodies[0])
-    write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, vx, vy)
-    step_space(wires.calls, dt)
-    read_body(wires.calls, wires.bodies[0], wires.counts)
+def _drive_alone(wires: Any, inertia: Any, fx: Any, fy: Any, torque: Any, dt: Any) -> None:
+    wake_body(wires.calls, wires.bodies[0], inertia)
+    for _ in range(2):
+        write_body(wires.calls, wires.bodies[0], wires.numbers, wires.counts, fx, fy, torque)
+        step_space(wires.calls, dt)
+        read_body(wires.calls, wires.bodies[0], wires.counts)
     park_body(wires.calls, wires.bodies[0])
 
 
 def disconnected() -> Wires:
     """The wires of a world without an engine."""
     return Wires(
-        np.zeros(7, np.int64), np.zeros(1, np.int64), np.zeros(ROOM), np.zeros(1, np.int32)
+        np.zeros(8, np.int64), np.zeros(1, np.int64), np.zeros(ROOM), np.zeros(1, np.int32)
     )
 
 
@@ -131,8 +138,8 @@ def connect(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> tuple[Wires, 
         array = ffi.from_buffer("double[]", numbers)
         floats.num, floats.max, floats.arr = 0, ROOM, array
         heard, told = ffi.new("pmBatchedData *"), ffi.new("pmBatchedData *")
-        heard.fields = lib.POSITION | lib.VELOCITY
-        told.fields = lib.VELOCITY
+        heard.fields = lib.POSITION | lib.ANGLE | lib.VELOCITY | lib.ANGULAR_VELOCITY
+        told.fields = lib.FORCE | lib.TORQUE
         heard.floatArray = told.floatArray = floats
         heard.intArray = told.intArray = ints
         calls = [_address(ffi, ffi.addressof(lib, name)) for name in SIGNATURES]
@@ -180,23 +187,25 @@ def trusted() -> bool:
     def world() -> tuple[pymunk.Space, pymunk.Body]:
         space = pymunk.Space()
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
-        body.position = (1.25, -0.5)
+        body.position, body.angle = (1.25, -0.5), 0.75
         circle = pymunk.Circle(body, 0.1)
         circle.mass = 9.0
         space.add(body, circle)
         return space, body
 
-    speed, dt = (0.3, 0.7), 1.0 / 60.0
+    force, torque, inertia, dt = (30.0, 70.0), 0.3, 0.05, 1.0 / 60.0
     space, body = world()
     body.body_type = pymunk.Body.DYNAMIC
-    body.velocity = speed
-    space.step(dt)
-    expected = (*body.position, *body.velocity)
+    body.moment = inertia
+    for _ in range(2):
+        body.force, body.torque = force, torque
+        space.step(dt)
+    expected = (*body.position, body.angle, *body.velocity, body.angular_velocity)
     space, body = world()
     try:
         wires, _kept = connect(space, [body])
     except NoBridge:
         return False
-    _drive_alone(wires, *speed, dt)
+    _drive_alone(wires, inertia, *force, torque, dt)
     parked = body.body_type == pymunk.Body.STATIC
     return parked and tuple(wires.numbers[: len(expected)].tolist()) == expected

@@ -1,7 +1,7 @@
 """Robots that drive: along planned paths, at the speeds and with the turns of a real drive.
 
-With an engine, bodies move in a physics space; without, they go where they are commanded to.
-Both run the same compiled loop and agree to the bit as long as nothing touches.
+With an engine, forces move bodies in a physics space, and what they do is what happens; without,
+robots go exactly as planned, and what that takes is worked out from the plan: the prediction.
 
 Importing this module loads numba; pymunk is loaded only for an engine.
 """
@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.motion import Outcome, Trip
-from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING
-from fleet.motion.movers import Account, Movers
+from fleet.motion.builds import builds_of
+from fleet.motion.kernels.records import ARRIVED, EMPTY, TOUCHED, WAITING, Records
+from fleet.motion.movers import Movers
 from fleet.motion.options import DriveOptions
-from fleet.motion.params import fine_substeps, params_of
+from fleet.motion.params import fine_substeps, ladder_of, params_of
 from fleet.motion.planning import Planner, corners
 from fleet.power import Battery
 from fleet.robot import Robot, RobotSpec
@@ -53,8 +54,11 @@ class DrivenMotion:
     Time goes in steps of ``options.dt``: ``now`` is a multiple of it, and :meth:`advance` leads
     to the last step not after its ``until``. A trip ends with a step.
 
+    ``rng`` draws how each robot differs from what its controller believes.
+
     Raises:
-        ValueError: free traffic without an engine: nothing would keep bodies apart.
+        ValueError: the robot cannot drive at all, or traffic is free without an engine, so that
+            nothing would keep bodies apart.
     """
 
     def __init__(
@@ -65,6 +69,7 @@ class DrivenMotion:
         *,
         engine: bool,
         sample_interval: float | None = None,
+        rng: np.random.Generator | None = None,
     ) -> None:
         self.spec = spec
         self.options = options or DriveOptions()
@@ -72,6 +77,7 @@ class DrivenMotion:
             raise ValueError("motion traffic is 'free' without an engine; expected 'reserved'")
         self._arena = arena
         self._with_engine = engine
+        self._rng = rng or np.random.default_rng(0)
         self._params = params_of(spec, self.options, sample_interval)
         self._fine = fine_substeps(spec, self.options)
         self._substeps = 1
@@ -104,16 +110,18 @@ class DrivenMotion:
             ValueError: a robot overlaps another one, an obstacle or a wall.
         """
         points = [robot.position for robot in robots]
-        ladder = self.options.ladder(self.spec)
+        ladder = ladder_of(self.spec, self.options)
         self._planner = Planner(self._arena, self.spec.radius, points, ladder)
-        self._engine = self._make_engine(robots) if self._with_engine else None
-        self._movers = Movers(self._params, self._planner.floor, self._engine)
+        builds = builds_of(self.spec, len(robots), self._rng)
+        self._engine = self._make_engine(builds, robots) if self._with_engine else None
+        self._movers = Movers(self._params, builds, self._planner.floor, self._engine)
         self._facing = [robot.heading for robot in robots]  # [rad], not wrapped
 
-    def _make_engine(self, robots: Sequence[Robot]) -> Engine:
+    def _make_engine(self, builds: Records, robots: Sequence[Robot]) -> Engine:
         from fleet.motion.engine import Engine
 
-        return Engine(self._arena, self.spec, robots, bridge=self.options.bridge)
+        radius, bridge = self.spec.radius, self.options.bridge
+        return Engine(self._arena, radius, builds, robots, bridge=bridge)
 
     def cost(self, robot: Robot, site: Point) -> float:
         """The energy that ``robot`` believes going to ``site`` [m] takes [J], by the options.
@@ -338,9 +346,9 @@ class DrivenMotion:
         for place, outcome in outcomes.items():
             voyage = self._voyages[place]
             robot = voyage.robot
-            account = self._movers.account(voyage.slot)
-            self._over.append(self._trip(voyage, outcome, account))
-            self._facing[robot.id] = account.heading
+            trip, heading = self._trip(voyage, outcome)
+            self._over.append(trip)
+            self._facing[robot.id] = heading
             self._planner.rest(robot.id, robot.position)
             self._under_way.discard(robot.id)
             self._stopping.discard(voyage.slot)
@@ -348,27 +356,25 @@ class DrivenMotion:
         for place in sorted(outcomes, reverse=True):
             del self._voyages[place], self._robots[place], self._batteries[place]
 
-    def _trip(self, voyage: _Voyage, outcome: Outcome, account: Account) -> Trip:
+    def _trip(self, voyage: _Voyage, outcome: Outcome) -> tuple[Trip, float]:
+        """The trip that is over, and where the robot faces [rad], not wrapped."""
         dt = self.options.dt
-        smooth = account.path - account.jostled
-        return Trip(
+        driven = self._movers.driven(voyage.slot)
+        trip = Trip(
             voyage.robot.id,
             outcome,
             voyage.origin,
             voyage.site,
-            (account.x, account.y),
+            (driven.x, driven.y),
             voyage.departed * dt,
             self.now,
-            account.path,
-            account.spent,
+            driven.path,
+            driven.spent,
             voyage.planned,
             dist(voyage.goal, voyage.site),
-            account.waited * dt,
-            account.steps,
-            account.contacts,
-            energy_path=self._eq1 * account.path,
-            energy_ramps=account.spent_driving - self._eq1 * smooth,
-            energy_pivots=account.spent_turning,
-            energy_waiting=account.spent_waiting,
-            energy_contact=account.spent_off_path - self._eq1 * account.jostled,
+            driven.waited * dt,
+            driven.steps,
+            driven.contacts,
+            self._movers.accounts(voyage.slot),
         )
+        return trip, driven.heading

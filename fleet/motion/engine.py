@@ -2,7 +2,7 @@
 
 Parked robots are static, which costs nothing however many there are; a robot's body is made
 dynamic for its drive. Two bodies that are pressed together sink in by ``SLOP`` at most; nothing
-rubs and nothing bounces. So nothing turns a disc but its own wheels: bodies have no headings.
+rubs and nothing bounces.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ from collections.abc import Sequence
 import pymunk
 
 from fleet.motion.chipmunk import connect, trusted
-from fleet.motion.kernels.records import ARRIVED, EMPTY, IntArray, Records, Wires
-from fleet.robot import Robot, RobotSpec
+from fleet.motion.kernels.bumps import parts
+from fleet.motion.kernels.loop import drives, parks, press, witness
+from fleet.motion.kernels.records import Floor, IntArray, Record, Records, Traffic, Wires
+from fleet.robot import Robot
 from worlds.arena import Arena
 from worlds.shapes import Corner
 
@@ -22,16 +24,25 @@ ITERATIONS = 10  # of the contact solver in a step
 
 
 class Engine:
-    """A space with everybody in it. ``bridge``: whether compiled loops may call it directly."""
+    """A space with everybody in it. ``builds`` (n or more,): what robots are like; ``bridge``:
+    whether compiled loops may call it directly.
+    """
 
     def __init__(
-        self, arena: Arena, spec: RobotSpec, robots: Sequence[Robot], *, bridge: bool = True
+        self,
+        arena: Arena,
+        radius: float,
+        builds: Records,
+        robots: Sequence[Robot],
+        *,
+        bridge: bool = True,
     ) -> None:
         self.space = pymunk.Space()
         self.space.iterations = ITERATIONS
         self.space.collision_slop = SLOP
         self._fence(arena)
-        self.bodies = [self._body(spec, robot) for robot in robots]
+        masses = builds["mass"].tolist()
+        self.bodies = [self._body(radius, masses[robot.id], robot) for robot in robots]
         self.wires: Wires | None = None
         if bridge and trusted():
             self.wires, self._kept = connect(self.space, self.bodies)
@@ -45,11 +56,11 @@ class Engine:
             for a, b in zip(loop, (*loop[1:], loop[0]), strict=True):
                 self.space.add(pymunk.Segment(self.space.static_body, a, b, 0.0))
 
-    def _body(self, spec: RobotSpec, robot: Robot) -> pymunk.Body:
+    def _body(self, radius: float, mass: float, robot: Robot) -> pymunk.Body:
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
-        body.position = robot.position
-        circle = pymunk.Circle(body, spec.radius)
-        circle.mass = spec.mass  # on the shape: a body forgets it when it is parked
+        body.position, body.angle = robot.position, robot.heading
+        circle = pymunk.Circle(body, radius)
+        circle.mass = mass  # on the shape: a body forgets it when it is parked
         return body
 
     def park(self, robot: int) -> None:
@@ -59,22 +70,40 @@ class Engine:
     def park_those_over(self, movers: Records, active: IntArray) -> None:
         """Park the robots whose trips have ended by themselves."""
         for slot in active:
-            mover = movers[slot]
-            if mover["awake"] and ARRIVED <= mover["phase"] <= EMPTY:
-                mover["awake"] = 0
-                self.park(mover["robot"])
+            if parks(movers[slot]):
+                self.park(movers[slot]["robot"])
 
-    def step(self, movers: Records, active: IntArray, dt: float, substeps: int) -> None:
-        """Carry out the commands of the ``active`` movers for a step, by the public interface."""
-        awake = [movers[slot] for slot in active if movers[slot]["awake"]]
-        for mover in awake:
-            body = self.bodies[mover["robot"]]
-            if mover["awake"] == 2:
-                body.body_type = pymunk.Body.DYNAMIC
-            body.velocity = (float(mover["vx"]), float(mover["vy"]))
-        for _ in range(substeps):
-            self.space.step(dt / substeps)
-        for mover in awake:
-            body = self.bodies[mover["robot"]]
-            mover["x"], mover["y"] = body.position
-            mover["ux"], mover["uy"] = body.velocity
+    def step(self, floor: Floor, traffic: Traffic, active: IntArray, step: int) -> None:
+        """A ``step`` of the ``active`` movers by the public interface."""
+        params, builds = traffic.params[0], traffic.builds
+        divided = int(params["substeps"])
+        if divided > 1:
+            divided = int(parts(traffic.movers, active, floor, params))
+        for n in range(divided):
+            driving = []
+            for slot in active.tolist():
+                mover, effort = traffic.movers[slot], traffic.efforts[slot]
+                if drives(mover, params, step, n == 0):
+                    build = builds[mover["robot"]]
+                    press(mover, effort, traffic.references, params, build, builds[-1], divided)
+                    self._push(mover, effort, builds)
+                    driving.append((mover, effort, build))
+            if not driving:
+                continue
+            self.space.step(float(params["dt"]) / divided)
+            for mover, effort, build in driving:
+                body = self.bodies[mover["robot"]]
+                x, y = body.position
+                vx, vy = body.velocity
+                spin = body.angular_velocity
+                witness(mover, effort, params, build, x, y, body.angle, vx, vy, spin, divided)
+
+    def _push(self, mover: Record, effort: Record, builds: Records) -> None:
+        robot = int(mover["robot"])
+        body = self.bodies[robot]
+        if mover["awake"] == 2:
+            body.body_type = pymunk.Body.DYNAMIC
+            body.moment = float(builds[robot]["inertia"])
+            mover["awake"] = 1
+        body.force = (float(effort["fx"]), float(effort["fy"]))
+        body.torque = float(effort["torque"])

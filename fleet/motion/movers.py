@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.motion import SAMPLE_FIELDS
+from fleet.motion import SAMPLE_FIELDS, Accounts
 from fleet.motion.chipmunk import disconnected
-from fleet.motion.kernels.loop import command, embark, launch, report, run, sample, settle
-from fleet.motion.kernels.records import MOVER, SEGMENT, Floor, Traffic
+from fleet.motion.kernels.loop import embark, launch, report, run, sample
+from fleet.motion.kernels.records import ARRIVED, EFFORT, MOVER, SEGMENT, Floor, Records, Traffic
 from fleet.motion.kernels.rollout import rollout
 from fleet.motion.kernels.stopping import blocked, stand, stop_short
 from protocols.compiled import direct
@@ -26,36 +26,36 @@ Path = NDArray[Any]  # (k,) SEGMENT
 SLOW = 0.1  # [m/s] below this a robot counts as stopped
 
 
-class Account(NamedTuple):
+class Driven(NamedTuple):
     """What has become of a robot under way: columns of :data:`kernels.records.MOVER`."""
 
     x: float  # [m]
     y: float
     heading: float  # [rad], not wrapped
     path: float  # [m]
-    jostled: float  # [m] of it
     waited: int  # [steps]
     steps: int
     contacts: int
-    spent: float  # [J], and by what for, each kept by itself:
-    spent_turning: float
-    spent_driving: float
-    spent_waiting: float
-    spent_off_path: float
+    spent: float  # [J]
 
 
 class Movers:
     """Robots under way, each in a slot, which is used again; in order of departure."""
 
-    def __init__(self, params: NDArray[Any], floor: Floor, engine: Engine | None) -> None:
+    def __init__(
+        self, params: Records, builds: Records, floor: Floor, engine: Engine | None
+    ) -> None:
         self.traffic = Traffic(
             params,
+            builds,
             np.zeros(0, MOVER),
-            np.zeros((0, 16), SEGMENT),
-            np.zeros((0, 61, 2), np.float32),
+            np.zeros(0, EFFORT),
+            np.zeros((0, 1024, 4)),
+            np.zeros((0, 64, 2), np.float32),
             np.zeros((0, 4)),
             np.zeros(0, np.int64),
             np.zeros(1, MOVER),
+            np.zeros((1024, 4)),
             np.zeros((0, 4)),
             np.zeros((0, 2), np.int64),
         )
@@ -67,7 +67,7 @@ class Movers:
         self._slots = np.zeros(0, np.int64)  # in order of departure
         self._count = 0  # of them in use
         self._found = np.zeros(0, np.int64)
-        self._ahead = np.zeros((1, 16), SEGMENT)
+        self._segments = np.zeros(16, SEGMENT)  # work space
         self._samples = np.zeros((1024 if params[0]["sample"] else 0, len(SAMPLE_FIELDS)))
         self._kept = 0  # rows of it in use
         self._full: list[NDArray[np.float64]] = []  # what did not fit in
@@ -84,33 +84,30 @@ class Movers:
         self._slots[self._count] = slot
         self._count += 1
         self._more_segments(len(path) + 1)
-        needed = self._embark(
-            self._floor, self.traffic, self._active, slot, robot, *position, heading, charge,
-            path, step,
+        room = self._embark(
+            self._floor, self.traffic, self._active, self._segments, slot, robot, *position,
+            heading, charge, path, step,
         )  # fmt: skip
-        if needed > self.traffic.reservations.shape[1]:
-            self._more_knots(needed)
+        if self._make_room(*room):
             self.resume(slot, path, step)
         return slot
 
     def resume(self, slot: int, path: Path, step: int) -> None:
         """Send a robot that is under way along another ``path``."""
         self._more_segments(len(path) + 1)
-        while True:
-            needed = launch(self._floor, self.traffic, self._active, slot, path, step)
-            if needed <= self.traffic.reservations.shape[1]:
-                return
-            self._more_knots(needed)
+        while self._make_room(
+            *launch(self._floor, self.traffic, self._active, self._segments, slot, path, step)
+        ):
+            pass
 
     def rollout(self, position: Point, heading: float, path: Path) -> float:
         """What driving along ``path`` from ``position`` [m] and ``heading`` [rad] drains [J]."""
-        if len(path) + 1 > self._ahead.shape[1]:
-            self._ahead = np.zeros((1, 2 * len(path) + 2), SEGMENT)
-        traffic = self.traffic
-        energy: float = self._rollout(
-            traffic.ghost, self._ahead, traffic.params, path, *position, heading
-        )
-        return energy
+        self._more_segments(len(path) + 1)
+        while True:
+            energy: float
+            energy, samples = self._rollout(self.traffic, self._segments, path, *position, heading)
+            if not self._make_room(samples, 0):
+                return energy
 
     def leave(self, places: list[int]) -> None:
         """The trips at these places in the order are over: their slots are free again."""
@@ -153,12 +150,16 @@ class Movers:
         if other != 0.0:
             mover["held"] -= other
 
-    def account(self, slot: int) -> Account:
+    def driven(self, slot: int) -> Driven:
         """What has become of one robot since its departure."""
-        return Account._make(self._accounts.item(slot))
+        return Driven._make(self._driven.item(slot))
+
+    def accounts(self, slot: int) -> Accounts:
+        """What its battery has paid for since."""
+        return Accounts._make(self._accounts.item(slot))
 
     def samples(self) -> NDArray[np.float64]:
-        """Poses (k, 6) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`, by time
+        """Poses (k, 8) kept since the last call, as :data:`fleet.motion.SAMPLE_FIELDS`, by time
         and robot.
         """
         rows = self._samples[: self._kept].copy()
@@ -176,11 +177,7 @@ class Movers:
 
     def stop_short(self, slot: int, step: int) -> None:
         """The robot brakes from ``step`` on."""
-        while True:
-            needed = stop_short(self._floor, self.traffic, slot, step)
-            if needed <= self.traffic.reservations.shape[1]:
-                return
-            self._more_knots(needed)
+        stop_short(self._floor, self.traffic, slot, step)
 
     def blocked_by(self, slot: int, step: int) -> list[int]:
         """The slots of those who will come too near to a robot that stands or stops."""
@@ -191,7 +188,7 @@ class Movers:
     def stopped(self, slot: int) -> list[tuple[RobotId, Point]]:
         """Who has come to a stop on its way, but for the mover in ``slot``, and where [m]."""
         movers = self.traffic.movers[self._active[self._active != slot]]
-        slow = np.hypot(movers["ux"], movers["uy"]) < SLOW
+        slow = np.hypot(movers["vx"], movers["vy"]) < SLOW
         return [
             (int(mover["robot"]), (float(mover["x"]), float(mover["y"])))
             for mover in movers[slow & (movers["awake"] != 0)]
@@ -205,26 +202,23 @@ class Movers:
     def _run_openly(self, step: int, steps: int) -> tuple[int, int, int]:
         """The same as the compiled loop, with the engine stepped over its public interface."""
         assert self._engine is not None
-        movers, segments, params = (
-            self.traffic.movers,
-            self.traffic.segments,
-            self.traffic.params[0],
-        )
+        traffic, active = self.traffic, self._active
+        sampled = traffic.params[0]["sample"] > 0
         room = self._samples[self._kept :]
         kept = over = made = 0
         while made < steps and over == 0:
-            if params["sample"] and kept + self._count > len(room):
+            if sampled and kept + self._count > len(room):
                 break
-            if command(movers, segments, params, self._active, step + made) > 0:
-                self._engine.step(
-                    movers, self._active, float(params["dt"]), int(params["substeps"])
-                )
-            over = settle(movers, params, self._active)
-            self._engine.park_those_over(movers, self._active)
+            self._engine.step(self._floor, traffic, active, step + made)
+            over = int((traffic.movers["phase"][active] >= ARRIVED).sum())
+            self._engine.park_those_over(traffic.movers, active)
             made += 1
-            if params["sample"]:
-                kept = sample(movers, params, self._active, room, kept, step + made)
-        report(movers, self._active, self.traffic.poses, self.traffic.over)
+            if sampled:
+                kept = sample(
+                    traffic.movers, traffic.references, traffic.params[0], active, room, kept,
+                    step + made,
+                )  # fmt: skip
+        report(traffic.movers, active, traffic.poses, traffic.over)
         return made, kept, over
 
     @property
@@ -235,11 +229,14 @@ class Movers:
     def _more_slots(self) -> None:
         have = len(self.traffic.movers)
         more = max(4, have)
-        by_slot = ("movers", "segments", "reservations", "boxes", "near", "poses", "over")
+        by_slot = (
+            "movers", "efforts", "references", "reservations", "boxes", "near", "poses", "over"
+        )  # fmt: skip
         self.traffic = self.traffic._replace(
             **{name: _longer(getattr(self.traffic, name), have + more) for name in by_slot}
         )
-        self._accounts = self.traffic.movers[list(Account._fields)]  # a view
+        self._driven = self.traffic.movers[list(Driven._fields)]  # views
+        self._accounts = self.traffic.movers[list(Accounts._fields)]
         self._slots = _longer(self._slots, have + more)
         self._found = np.zeros(have + more, np.int64)
         self._free.extend(range(have + more - 1, have - 1, -1))
@@ -253,19 +250,27 @@ class Movers:
             self._samples = np.zeros((2 * self._count, len(SAMPLE_FIELDS)))
 
     def _more_segments(self, needed: int) -> None:
-        if needed > self.traffic.segments.shape[1]:
-            self.traffic = self.traffic._replace(
-                segments=_longer(self.traffic.segments.swapaxes(0, 1), 2 * needed)
-                .swapaxes(0, 1)
-                .copy()
-            )
+        if needed > len(self._segments):
+            self._segments = np.zeros(2 * needed, SEGMENT)
 
-    def _more_knots(self, needed: int) -> None:
-        self.traffic = self.traffic._replace(
-            reservations=_longer(self.traffic.reservations.swapaxes(0, 1), 2 * needed)
-            .swapaxes(0, 1)
-            .copy()
-        )
+    def _make_room(self, samples: int, knots: int) -> bool:
+        """Make room for references and tracks that long; whether there was too little."""
+        traffic = self.traffic
+        short = samples > len(traffic.draft)
+        if short:
+            self.traffic = traffic = traffic._replace(
+                references=_wider(traffic.references, 2 * samples),
+                draft=np.zeros((2 * samples, 4)),
+            )
+        if knots > traffic.reservations.shape[1]:
+            self.traffic = traffic._replace(reservations=_wider(traffic.reservations, 2 * knots))
+            return True
+        return short
+
+
+def _wider(array: NDArray[Any], length: int) -> NDArray[Any]:
+    """The same with zeros after each row."""
+    return _longer(array.swapaxes(0, 1), length).swapaxes(0, 1).copy()
 
 
 def _longer(array: NDArray[Any], length: int) -> NDArray[Any]:

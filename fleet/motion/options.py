@@ -6,9 +6,6 @@ from dataclasses import dataclass
 from math import inf
 from typing import Literal, get_args
 
-from fleet.motion.kernels.records import GRIP
-from fleet.robot import RobotSpec
-
 Traffic = Literal["reserved", "free"]
 Belief = Literal["straight", "path", "corrected", "driven"]
 
@@ -68,14 +65,3 @@ class DriveOptions:
                 "motion belief is 'corrected'; expected per_launch or per_metre as well, without"
                 " which it is 'path'"
             )
-
-    def ladder(self, spec: RobotSpec) -> tuple[float, ...]:
-        """Clearances [m] to try in turn for a robot.
-
-        One more comes first if it lets a differential drive go around others at cruise speed:
-        the arc then has a radius of two robots' and the clearance.
-        """
-        if spec.drive == "holonomic":
-            return self.clearances
-        at_cruise = spec.cruise / (GRIP * spec.turn_rate) - 2.0 * spec.radius
-        return (at_cruise, *self.clearances) if at_cruise > self.clearances[0] else self.clearances

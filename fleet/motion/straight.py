@@ -9,7 +9,7 @@ from math import atan2, dist, floor
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.motion import SAMPLE_FIELDS, Outcome, Trip
+from fleet.motion import SAMPLE_FIELDS, Accounts, Outcome, Trip
 from fleet.robot import Robot, RobotSpec
 from protocols.messages import Point, RobotId
 
@@ -39,6 +39,7 @@ class StraightMotion:
     def __init__(self, spec: RobotSpec, sample_interval: float | None = None) -> None:
         self.now = 0.0  # [s]
         self._cruise = spec.cruise
+        self._power = spec.power
         self._per_metre = spec.power.per_metre(spec.cruise)
         self._interval = sample_interval
         self._legs: list[_Leg] = []
@@ -111,7 +112,7 @@ class StraightMotion:
                     dist(leg.origin, leg.end),
                     leg.energy,
                     planned=dist(leg.origin, leg.site),
-                    energy_path=leg.energy,
+                    accounts=self._accounts(leg),
                 )
             )
         self._legs = under_way
@@ -133,6 +134,15 @@ class StraightMotion:
         share = leg.share(self.now)
         end, energy = _between(leg, share), share * leg.energy
         return replace(leg, end=end, ends=self.now, energy=energy, outcome=outcome)
+
+    def _accounts(self, leg: _Leg) -> Accounts:
+        """The three terms of Eq. (1)."""
+        time = leg.energy / self._power.power(self._cruise)
+        return Accounts(
+            electronics=self._power.constant * time,
+            rolling=self._power.linear * self._cruise * time,
+            viscous=self._power.quadratic * self._cruise**2 * time,
+        )
 
     def _as_it_lasts(self, leg: _Leg) -> _Leg:
         """The leg as the battery lasts, if it has paid for other things on the way, as talk."""
@@ -178,6 +188,7 @@ class StraightMotion:
         rows[:, 3] = ay + share * (by - ay)
         rows[:, 4] = leg.robot.heading
         rows[:, 5] = leg.charge - share * leg.energy
+        rows[:, 6:8] = rows[:, 2:4]
         self._samples.append(rows)
 
 

@@ -123,7 +123,7 @@ class Layer:
         """A robot that has set off is going to drive along ``way`` (k, 2) [m]."""
 
     def moved(self, at: Moment, samples: NDArray[np.float64]) -> None:
-        """Poses (k, 6) of those under way, up to now; the moment's time is that of the last."""
+        """Poses (k, 8) of those under way, up to now; the moment's time is that of the last."""
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """A robot came to rest: at an event, short of it, or elsewhere, see :data:`RELOCATED`."""

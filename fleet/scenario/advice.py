@@ -53,8 +53,6 @@ def idle_robot(scenario: Scenario, _arena: Arena) -> Iterator[str]:
     plain = RobotSpec()
     given = [f.name for f in fields(plain) if f.name not in WITH_STRAIGHT]
     idle = [f"robot.{n}" for n in given if getattr(scenario.robot, n) != getattr(plain, n)]
-    extra = ("kinetic", "per_wheel")
-    idle += [f"robot.extra.{n}" for n in extra if getattr(scenario.robot.extra, n)]
     yield from does_nothing(idle, "in straight motion, which is Eq. (1) and a speed")
 
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from inspect import isclass
 from typing import Any
 
+from numpy.random import Generator
+
 from fleet.catalogue import look_up, parameters_of, takers
 from fleet.faults import Faults
 from fleet.modes import Rounds, Stream
@@ -137,9 +139,13 @@ def make_world(choice: Choice) -> World:
 
 
 def make_motion(
-    choice: Choice, spec: RobotSpec, arena: Arena, sample_interval: float | None
+    choice: Choice,
+    spec: RobotSpec,
+    arena: Arena,
+    sample_interval: float | None,
+    rng: Generator | None = None,
 ) -> Motion:
-    """The motion of that name, with its parameters.
+    """The motion of that name, with its parameters; ``rng`` draws how each robot differs.
 
     Raises:
         BadInput: there is none of that name, or a parameter does not fit.
@@ -148,7 +154,7 @@ def make_motion(
     motion: Motion
     try:
         motion = look_up("motion", choice.name, "motion").function(
-            spec, arena, options, sample_interval
+            spec, arena, options, sample_interval, rng
         )
     except ValueError as error:
         raise bad("motion", str(error)) from error

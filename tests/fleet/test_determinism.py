@@ -20,9 +20,9 @@ CASES = {
     "hole": {"motion": "physics", "world": "random-hole", "protocol": "gfgf2a", "seed": 12},
 }
 GOLDEN = {
-    "straight": "c1addc038dcbd35e",
-    "physics": "e8311c920f73c713",
-    "hole": "26e18496b53a5b1e",
+    "straight": "e68805c4083acfa5",
+    "physics": "7cd9b7f23c100562",
+    "hole": "43ac5b4dfd47231a",
 }
 HERE = (platform.system(), platform.machine())
 

@@ -1,38 +1,47 @@
-"""What a launch costs by the drive law, in closed form: to set beside what is fitted."""
+"""What a launch costs as the prediction of motion has it: to set beside what is fitted."""
 
 from __future__ import annotations
 
-from math import nan, pi, sqrt
+from functools import cache
+from math import inf, pi
 
-from fleet.robot import RobotSpec
+from fleet.motion.driven import DrivenMotion
+from fleet.power import Battery
+from fleet.robot import Robot, RobotSpec
+from worlds.arena import Arena
+
+HEADINGS = 60  # over which turning first is averaged
 
 
 def ramps_cost(spec: RobotSpec) -> float:
-    """Speeding up to cruise and braking to rest, beyond Eq. (1) on the way they take [J].
-
-    ∫P(v) dt over both ramps is 2·(c2·v³/3 + c1·v²/2 + c0·v)/a; Eq. (1) on the v²/a of their way
-    is (c2·v + c1 + c0/v)·v²/a. What is left is (c0·v - c2·v³/3)/a, whatever the distance, if it
-    is long enough to reach cruise speed.
-    """
-    v, power = spec.cruise, spec.power
-    lost = 0.5 * spec.mass * v * v if spec.extra.kinetic else 0.0
-    return (power.constant * v - power.quadratic * v**3 / 3.0) / spec.acceleration + lost
+    """Speeding up to cruise and braking to rest, beyond Eq. (1) on the way they take [J]."""
+    return _drive(spec, 0.0) - spec.power.per_metre(spec.cruise) * _far(spec)
 
 
+@cache
 def pivot_cost(spec: RobotSpec) -> float:
-    """Turning towards the site first, over headings of which all are alike [J].
-
-    A turn by θ from rest to rest takes 2·√(θ/α) at the angular acceleration α, on P(0); the mean
-    of √θ from 0 to Θ is 2/3·√Θ. NaN: the turn rate is reached on the way, or wheels pay.
-    """
-    if spec.drive == "holonomic":
-        return 0.0
-    most = 0.5 * pi if spec.reverse else pi
-    if spec.extra.per_wheel or most > spec.turn_rate**2 / spec.turn_acceleration:
-        return nan
-    return spec.power.constant * 4.0 / 3.0 * sqrt(most / spec.turn_acceleration)
+    """Turning towards the site first, over headings of which all are alike [J]."""
+    headings = [2.0 * pi * (k + 0.5) / HEADINGS for k in range(HEADINGS)]
+    return sum(_drive(spec, heading) for heading in headings) / HEADINGS - _drive(spec, 0.0)
 
 
 def launch_cost(spec: RobotSpec) -> float:
     """Both [J]."""
     return ramps_cost(spec) + pivot_cost(spec)
+
+
+def _far(spec: RobotSpec) -> float:
+    """Far enough to reach cruise speed twice over [m]."""
+    return 10.0 * spec.cruise + 2.0 * spec.cruise**2 / spec.acceleration
+
+
+@cache
+def _drive(spec: RobotSpec, heading: float) -> float:
+    """What a straight drive takes that begins with a turn from ``heading`` [rad] [J]."""
+    far, room = _far(spec), 4.0 * spec.radius
+    motion = DrivenMotion(spec, Arena(far + 2.0 * room, 2.0 * room), engine=False)
+    robot = Robot(0, (room, room), heading, Battery(1e9), inf, [], motion)
+    motion.place([robot])
+    motion.depart(robot, (room + far, room))
+    (trip,) = motion.advance(inf)
+    return trip.energy

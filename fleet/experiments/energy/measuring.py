@@ -7,7 +7,7 @@ results of before a thing of the past.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, dist, inf, pi, sin
+from math import cos, dist, fsum, inf, pi, sin
 from typing import Any
 
 import numpy as np
@@ -102,6 +102,7 @@ def row_of(trip: Trip, heading: float, drained: float, spec: RobotSpec) -> Row:
     (x0, y0), (x1, y1) = trip.origin, trip.site
     straight = dist(trip.origin, trip.site)
     bearing = float(np.arctan2(y1 - y0, x1 - x0))
+    accounts, path = trip.accounts, spec.power.per_metre(spec.cruise) * trip.path
     return {
         "outcome": trip.outcome,
         "straight": straight,
@@ -110,11 +111,15 @@ def row_of(trip: Trip, heading: float, drained: float, spec: RobotSpec) -> Row:
         "turn": abs((bearing - heading + pi) % (2.0 * pi) - pi),  # to face the site
         "per_metre": spec.power.per_metre(spec.cruise),  # [J/m] of Eq. (1)
         "drained": drained,  # from the battery
-        "energy_path": trip.energy_path,
-        "energy_ramps": trip.energy_ramps,
-        "energy_pivots": trip.energy_pivots,
-        "energy_waiting": trip.energy_waiting,
-        "energy_contact": trip.energy_contact,
+        "energy_path": path,
+        "energy_ramps": fsum(accounts)
+        - path
+        - accounts.scrub
+        - accounts.waiting
+        - accounts.contact,
+        "energy_pivots": accounts.scrub,
+        "energy_waiting": accounts.waiting,
+        "energy_contact": accounts.contact,
         "waited": trip.waited,
         "contacts": trip.contacts,
         "offset": trip.offset,

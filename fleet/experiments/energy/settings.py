@@ -65,8 +65,8 @@ SETTINGS = (
     Variation("build", PIONEERS, {"robots": 40, **_robot(preset="pioneer")}),
     Variation("build", "drives backwards too", _robot(reverse=True)),
     Variation("build", "holonomic", _robot(drive="holonomic")),
-    Variation("build", "pays its kinetic energy", _robot(extra={"kinetic": True})),
-    Variation("build", "pays per wheel", _robot(extra={"per_wheel": True})),
+    Variation("build", "weighs 30 kg", _robot(mass=30.0)),
+    Variation("build", "scrubs with 1 N·m", _robot(scrub=1.0)),
     Variation("build", NO_INERTIA, _robot(preset="ideal")),
 )
 """The paper's arena and robots, and one thing different at a time."""

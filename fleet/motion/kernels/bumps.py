@@ -1,9 +1,10 @@
-"""Running into others without an engine: only after a breakdown, by those too near to brake."""
+"""Who is about to touch: with an engine, for finer steps; without, to stop in front of bodies."""
 
 from __future__ import annotations
 
 import math
 
+from fleet.motion.kernels.grid import discs_near, edges_near
 from protocols.compiled import kernel
 
 
@@ -35,6 +36,30 @@ def bumps(mover, movers, active, floor, params):
 
 
 @kernel
-def stay(mover):
-    """Be stopped by what is in the way."""
-    mover.ux = mover.uy = 0.0
+def near_something(mover, movers, active, floor, params):
+    """Whether ``mover`` may touch a body or a wall in this step. Where others rest, or will."""
+    x, y, radius = mover.x, mover.y, params.radius
+    reach, grid = radius + 4.0 * params.cruise * params.dt, floor.grid[0]
+    if min(x, y, grid.width - x, grid.height - y) < reach:
+        return True
+    for k in range(len(active)):
+        other = movers[active[k]]
+        if other.slot != mover.slot:
+            dx, dy = other.x - x, other.y - y
+            if dx * dx + dy * dy < (reach + radius) * (reach + radius):
+                return True
+    if discs_near(floor, mover.robot, x, y, x, y, reach + radius) > 0:
+        return True
+    return edges_near(floor, x, y, x, y, reach, 0) > 0
+
+
+@kernel
+def parts(movers, active, floor, params):
+    """Into how many parts a step is divided where bodies may touch: one, unless somebody drives
+    near something.
+    """
+    for k in range(len(active)):
+        mover = movers[active[k]]
+        if mover.awake and near_something(mover, movers, active, floor, params):
+            return params.substeps
+    return 1

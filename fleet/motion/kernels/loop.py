@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from fleet.motion.chipmunk import park_body, read_body, step_space, wake_body, write_body
-from fleet.motion.kernels.bumps import bumps, stay
-from fleet.motion.kernels.drive import coast, drive, position_at, swing, wait
+from fleet.motion.kernels.accounts import follow, settle_up, wait
+from fleet.motion.kernels.bumps import bumps, parts
 from fleet.motion.kernels.geometry import wrapped
 from fleet.motion.kernels.grid import put
-from fleet.motion.kernels.profile import set_off
 from fleet.motion.kernels.records import (
     ARRIVED,
     DRIVING,
     EMPTY,
+    LOST,
     MOVER,
     TOUCHED,
     WAITING,
@@ -25,47 +25,59 @@ from fleet.motion.kernels.records import (
     Traffic,
     Wires,
 )
-from fleet.motion.kernels.recovery import recover
+from fleet.motion.kernels.reference import SPARE, at, lay
 from fleet.motion.kernels.reservations import foresee, reserve
+from fleet.motion.kernels.tracking import compare, stop, track, track_freely
+from fleet.motion.kernels.wheels import push, push_freely
 from protocols.compiled import kernel
 
-STILL = 1e-9  # [m/s] a smaller difference to the command is no contact
+RESTS = 1e-3  # [m/s] below which a robot at the end of its way is parked
+RESTS_TURNING = 1e-2  # [rad/s]
+FIGHTS = 2.5  # [s] that it may take to come to rest at the end of its way
+CLOSE = 0.02  # [m] from there it has arrived, otherwise it has missed it
+PROGRESS = 3.0  # samples that it must get on
+PATIENCE = 1.0  # [s] in which it must
+ASTRAY = 0.15  # [m] off the path it gives up
 
 
 @kernel
 def launch(
-    floor: Floor, traffic: Traffic, active: IntArray, slot: int, path: Records, step: int
-) -> int:
+    floor: Floor,
+    traffic: Traffic,
+    active: IntArray,
+    segments: Records,
+    slot: int,
+    path: Records,
+    step: int,
+) -> tuple[int, int]:
     """Send the mover in ``slot`` along ``path``, (k,) SEGMENT, at ``step`` or as soon as its way is
     free, and reserve the place where it will rest.
 
-    Returns how many knots its track has; if that is more than there is room for, it must be
-    launched again with more.
+    ``segments``, (more than k,) SEGMENT, are work space. Returns how much room its reference and
+    how many knots its track take; if there is less of one, it must be launched again with more.
     """
-    movers, segments, params = traffic.movers, traffic.segments, traffic.params[0]
-    reservations, boxes = traffic.reservations, traffic.boxes
-    mover, end = movers[slot], len(path) + 1
-    for k in range(1, end):
-        segments[slot, k] = path[k - 1]
-    set_off(mover, segments, end, params)
-    mover.phase, mover.start, mover.knots = WAITING, step, 0
-    if end == 1:
+    movers, params = traffic.movers, traffic.params[0]
+    believed = traffic.builds[len(traffic.builds) - 1]
+    reservations, boxes, reference = traffic.reservations, traffic.boxes, traffic.references[slot]
+    mover = movers[slot]
+    mover.phase, mover.start, mover.knots, mover.stopping = WAITING, step, 0, 0
+    mover.due, mover.best, mover.since, mover.late = 0.0, 0.0, 0.0, 0.0
+    mover.ahead = mover.aside = 0.0
+    if len(path) == 0:
         mover.phase = ARRIVED
-        return 0
-    if mover.ux != 0.0 or mover.uy != 0.0:
-        mover.off_path = 1
-    x, y = position_at(segments[slot, end - 1], segments[slot, end - 1].length)
+        return 0, 0
+    count = lay(reference, segments, path, mover.x, mover.y, mover.heading, params, believed)
+    if count + SPARE > len(reference):
+        return count + SPARE, 0
+    mover.count = count
     if params.reserved:
-        traffic.ghost[0] = mover
-        ghost = traffic.ghost[0]
-        foresee(mover, ghost, segments, reservations, boxes, params, step)
-        if mover.knots > reservations.shape[1]:
-            return int(mover.knots)
+        knots = foresee(mover, reference, reservations, boxes, params, step)
+        if knots > reservations.shape[1]:
+            return count + SPARE, knots
         put_off = reserve(mover, movers, reservations, boxes, active, traffic.near, params)
         mover.start += params.stride * put_off
-        x, y = ghost.x, ghost.y
-    put(floor, mover.robot, x, y)
-    return int(mover.knots)
+    put(floor, mover.robot, reference[count - 1, 0], reference[count - 1, 1])
+    return count + SPARE, int(mover.knots)
 
 
 @kernel
@@ -73,6 +85,7 @@ def embark(
     floor: Floor,
     traffic: Traffic,
     active: IntArray,
+    segments: Records,
     slot: int,
     robot: int,
     x: float,
@@ -81,109 +94,114 @@ def embark(
     charge: float,
     path: Records,
     step: int,
-) -> int:
+) -> tuple[int, int]:
     """Give ``robot`` the mover in ``slot`` and send it along ``path``; see launch."""
     traffic.movers[slot] = np.zeros(1, MOVER)[0]
     mover = traffic.movers[slot]
     mover.robot, mover.slot, mover.departed = robot, slot, step
     mover.x, mover.y, mover.heading, mover.held = x, y, heading, charge
-    return launch(floor, traffic, active, slot, path, step)
+    return launch(floor, traffic, active, segments, slot, path, step)
 
 
 @kernel
-def _decide(mover, segments, params, step):
-    """Command what a mover does in ``step``; returns whether it does anything.
-
-    Its body is woken when it leaves its place: where robots are kept apart, one that turns on
-    the spot needs no engine.
-    """
+def sets_off(mover, params, step):
+    """Whether a mover drives in ``step``; if not it waits."""
     if mover.phase == WAITING:
         if step < mover.start:
             wait(mover, params)
             return False
         mover.phase = DRIVING
+    if mover.phase != DRIVING:
+        return False
     mover.steps += 1
-    if mover.off_path:
-        recover(mover, segments, params)
-    else:
-        drive(mover, segments, params, params.dt)
-    if not mover.awake and (mover.vx != 0.0 or mover.vy != 0.0 or not params.reserved):
+    if not mover.awake:
         mover.awake = 2
     return True
 
 
 @kernel
-def _see(mover, params):
-    """See what became of the command; returns whether the trip needs looking after."""
-    if mover.awake:
-        mover.awake = 1
-        dx, dy = mover.ux - mover.vx, mover.uy - mover.vy
-        touching = dx * dx + dy * dy > STILL * STILL
-        if touching and not mover.touching:
-            mover.contacts += 1
-        mover.touching = 1 if touching else 0
-        if touching and mover.phase == DRIVING and not mover.off_path:
-            mover.off_path = 1
-            if params.reserved:
-                mover.phase = TOUCHED
-    return mover.phase >= ARRIVED
+def press(mover, effort, references, params, build, believed, divided):
+    """Decide how hard a mover pushes for the next part of a step that is ``divided`` into so many
+    parts.
+    """
+    step, share = params.dt / divided, 1.0 / divided
+    pace = 1.0 / step
+    x, y, heading, way = at(references, mover.slot, mover.count, mover.due)
+    compare(mover, effort, params, x, y, heading, step, share)
+    x_next, y_next, heading_next, way_next = at(references, mover.slot, mover.count, mover.due)
+    if params.holonomic:
+        track_freely(
+            mover, effort, params, believed, (x_next - x) * pace, (y_next - y) * pace, pace
+        )
+        push_freely(mover, effort, params, build, believed, step, pace)
+    else:
+        if effort.stop:
+            stop(mover, effort, params, believed, pace)
+        else:
+            ahead, aside = (way_next - way) * pace, (heading_next - heading) * pace
+            track(mover, effort, params, believed, ahead, aside, pace)
+        push(mover, effort, params, build, believed, step, pace)
 
 
 @kernel
-def command(movers: Records, segments: Records, params: Record, active: IntArray, step: int) -> int:
-    """Decide what everybody does in ``step``; returns for how many that is up to the engine."""
-    moving, part = 0, params.dt / params.substeps
-    for k in range(len(active)):
-        mover = movers[active[k]]
-        if _decide(mover, segments, params, step):
-            if mover.awake:
-                swing(mover, part, params.substeps)
-                moving += 1
-            else:
-                coast(mover, part, params.substeps)
-    return moving
+def _see(mover, params, pushed, step):
+    """See what became of a mover's ``step`` [s]: whether it was pushed, and what of its trip."""
+    if pushed and not mover.touching:
+        mover.contacts += 1
+    mover.touching = 1 if pushed else 0
+    if mover.phase != DRIVING:
+        return
+    out = pushed or mover.lags or mover.error > params.margin
+    if out and params.reserved and not mover.stopping:
+        mover.phase = TOUCHED
+        return
+    if mover.late > 0.0:
+        speed = abs(mover.vx) + abs(mover.vy)
+        if (speed < RESTS and abs(mover.spin) < RESTS_TURNING) or mover.late > FIGHTS:
+            mover.phase = ARRIVED if mover.error < CLOSE else LOST
+        return
+    if mover.due >= mover.best + PROGRESS:
+        mover.best, mover.since = mover.due, 0.0
+    mover.since += step
+    if mover.since > PATIENCE or mover.error > ASTRAY:
+        mover.phase = LOST
 
 
 @kernel
-def settle(movers: Records, params: Record, active: IntArray) -> int:
-    """See what became of the commands; returns how many trips need looking after."""
-    over = 0
-    for k in range(len(active)):
-        if _see(movers[active[k]], params):
-            over += 1
-    return over
+def drives(mover, params, step, first):
+    """Whether a mover's body is up to the engine in the next part of ``step``, the ``first`` of it
+    or not.
+    """
+    if first and not sets_off(mover, params, step):
+        return False
+    return mover.awake != 0 and mover.phase == DRIVING
 
 
 @kernel
-def _tell(mover, calls, bodies, numbers, counts):
-    """Give the velocity that a mover is to have to its body."""
-    body = bodies[mover.robot]
-    if mover.awake == 2:
-        wake_body(calls, body)
-    write_body(calls, body, numbers, counts, mover.vx, mover.vy)
+def witness(mover, effort, params, build, x, y, heading, vx, vy, spin, divided):
+    """Let a mover know its body's pose and velocity after a part of a step."""
+    part = params.dt / divided
+    pushed = settle_up(mover, effort, params, build, x, y, heading, vx, vy, spin, part)
+    _see(mover, params, pushed, part)
 
 
 @kernel
-def _hear(mover, calls, bodies, numbers, counts):
-    """Learn from a mover's body where it is now, and how fast."""
-    read_body(calls, bodies[mover.robot], counts)
-    mover.x, mover.y = numbers[0], numbers[1]
-    mover.ux, mover.uy = numbers[2], numbers[3]
-
-
-@kernel
-def sample(
-    movers: Records, params: Record, active: IntArray, samples: FloatArray, count: int, step: int
-) -> int:
-    """Keep the poses at ``step`` of those whose turn it is; returns how many are kept now."""
+def sample(movers, references, params, active, samples, count, step):
+    """Keep the poses at ``step`` of those whose turn it is, and where they should be; returns how
+    many are kept now.
+    """
     for k in range(len(active)):
         mover = movers[active[k]]
         turn = mover.phase == DRIVING and (step - mover.departed) % params.sample == 0
         if turn or mover.phase >= ARRIVED:
+            due = mover.due if mover.late > 0.0 else max(mover.due - 1.0, 0.0)
+            place = int(due)
             samples[count, 0], samples[count, 1] = mover.robot, step * params.dt
             samples[count, 2], samples[count, 3] = mover.x, mover.y
             samples[count, 4] = wrapped(mover.heading)
             samples[count, 5] = mover.held - mover.spent
+            samples[count, 6] = references[mover.slot, place, 0]
+            samples[count, 7] = references[mover.slot, place, 1]
             count += 1
     return count
 
@@ -205,6 +223,30 @@ def report(movers: Records, active: IntArray, poses: FloatArray, over: IntArray)
 
 
 @kernel
+def _go_by_plan(mover, reference, params, believed, blocked):
+    """A step of one robot without an engine: exactly as planned, but that it stays where it is if
+    a body has ``blocked`` its way.
+    """
+    if blocked:
+        mover.contacts += 1
+        mover.phase = LOST
+        return
+    last = mover.due >= mover.count - 1.0
+    follow(mover, reference, params, believed)
+    if last and mover.phase == DRIVING:
+        mover.phase = ARRIVED
+
+
+@kernel
+def parks(mover: Record) -> bool:
+    """Whether the trip of ``mover`` has ended by itself, so that its body is to be parked."""
+    if mover.awake and ARRIVED <= mover.phase <= EMPTY:
+        mover.awake = 0
+        return True
+    return False
+
+
+@kernel
 def run(
     floor: Floor,
     traffic: Traffic,
@@ -216,44 +258,61 @@ def run(
 ) -> tuple[int, int, int]:
     """Drive on from ``step`` until trips need looking after, ``steps`` at most.
 
-    ``wires``: the engine; with none, all that drive coast, and stop at what they would run into
-    where bodies may touch at all: in steps of several parts. Returns (steps made, samples kept,
-    trips that need looking after); it stops early if ``samples`` gets full.
+    ``wires``: the engine; with none, all go exactly as planned, but that nobody drives into a body
+    where somebody had to stop against its reservation. Returns (steps made, samples kept, trips
+    that need looking after); it stops early if ``samples`` gets full.
     """
-    movers, segments, params = traffic.movers, traffic.segments, traffic.params[0]
+    movers, efforts, references, builds, params = (
+        traffic.movers, traffic.efforts, traffic.references, traffic.builds, traffic.params[0]
+    )  # fmt: skip
     calls, bodies, numbers, counts = wires.calls, wires.bodies, wires.numbers, wires.counts
-    engine, substeps, part = calls[0] != 0, params.substeps, params.dt / params.substeps
+    engine, believed = calls[0] != 0, builds[len(builds) - 1]
     made, kept, over = 0, 0, 0
     while made < steps and over == 0:
         if params.sample > 0 and kept + len(active) > len(samples):
             break
-        moving = 0
-        for k in range(len(active)):
-            mover = movers[active[k]]
-            if _decide(mover, segments, params, step + made):
-                if engine and mover.awake:
-                    _tell(mover, calls, bodies, numbers, counts)
-                    swing(mover, part, substeps)
+        divided = 1 if engine else 0
+        if engine and params.substeps > 1:
+            divided = parts(movers, active, floor, params)
+        for n in range(divided):
+            moving = 0
+            for k in range(len(active)):
+                slot = active[k]
+                mover = movers[slot]
+                if drives(mover, params, step + made, n == 0):
                     moving += 1
-                elif substeps > 1 and bumps(mover, movers, active, floor, params):
-                    stay(mover)
-                else:
-                    coast(mover, part, substeps)
-        if moving > 0:
-            for _ in range(substeps):
-                step_space(calls, part)
+                    body, effort = bodies[mover.robot], efforts[slot]
+                    press(
+                        mover, effort, references, params, builds[mover.robot], believed, divided
+                    )  # fmt: skip
+                    if mover.awake == 2:
+                        wake_body(calls, body, builds[mover.robot].inertia)
+                        mover.awake = 1
+                    write_body(calls, body, numbers, counts, effort.fx, effort.fy, effort.torque)
+            if moving == 0:
+                continue
+            step_space(calls, params.dt / divided)
+            for k in range(len(active)):
+                slot = active[k]
+                mover = movers[slot]
+                if drives(mover, params, step + made, False):
+                    read_body(calls, bodies[mover.robot], counts)
+                    witness(
+                        mover, efforts[slot], params, builds[mover.robot], numbers[0], numbers[1],
+                        numbers[2], numbers[3], numbers[4], numbers[5], divided,
+                    )  # fmt: skip
         for k in range(len(active)):
             mover = movers[active[k]]
-            if engine and mover.awake:
-                _hear(mover, calls, bodies, numbers, counts)
-            if _see(mover, params):
+            if not engine and sets_off(mover, params, step + made):
+                careful = params.substeps > 1
+                blocked = careful and bumps(mover, movers, active, floor, params)
+                _go_by_plan(mover, references[active[k]], params, believed, blocked)
+            if mover.phase >= ARRIVED:
                 over += 1
-                if mover.awake and mover.phase <= EMPTY:
-                    mover.awake = 0
-                    if engine:
-                        park_body(calls, bodies[mover.robot])
+                if parks(mover) and engine:
+                    park_body(calls, bodies[mover.robot])
         made += 1
         if params.sample > 0:
-            kept = sample(movers, params, active, samples, kept, step + made)
+            kept = sample(movers, references, params, active, samples, kept, step + made)
     report(movers, active, traffic.poses, traffic.over)
     return made, kept, over

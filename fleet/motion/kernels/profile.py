@@ -1,14 +1,16 @@
-"""From a path to a drive: the turn that comes first, top speeds, and what driving costs."""
+"""From a path to a speed profile: the turn that comes first, top speeds, and how they change."""
 
 from __future__ import annotations
 
 import math
 
 from fleet.motion.kernels.geometry import wrapped
-from fleet.motion.kernels.records import GRIP, LINE, TURN
+from fleet.motion.kernels.records import ARC, LINE, TURN, TURN_SHARE
 from protocols.compiled import kernel
 
 STRAIGHT = 1e-9  # [rad] no turn
+NEAR = 1e-12  # [m], [rad], [s] that count as none
+FORCE_SHARE = 0.8  # of the force of wheels that a plan may take; the rest is for finding back
 
 
 @kernel
@@ -19,6 +21,20 @@ def heading_at(segment, along):
     if segment.kind == TURN:
         return segment.angle + segment.sense * along
     return segment.angle + segment.sense * (along / segment.radius + 0.5 * math.pi)
+
+
+@kernel
+def position_at(segment, along):
+    """The point [m] of a segment of path that is ``along`` [m or rad] from its start."""
+    if segment.kind == LINE:
+        return segment.x + along * segment.cos, segment.y + along * segment.sin
+    if segment.kind == ARC:
+        angle = segment.angle + segment.sense * along / segment.radius
+        return (
+            segment.x + segment.radius * math.cos(angle),
+            segment.y + segment.radius * math.sin(angle),
+        )
+    return segment.x, segment.y
 
 
 @kernel
@@ -34,62 +50,95 @@ def _turn_first(segment, then, x, y, heading):
 
 
 @kernel
-def _pay(segment, params, one, two, inertia):
-    """Set the power of a segment whose two wheels turn ``one`` and ``two`` times as fast as it is
-    driven: at the body's speed, or half for each wheel at its own.
+def scrub_share(turn, speed, onset):
+    """How much of the scrub a robot meets that turns at ``turn`` [rad/s] and rolls at ``speed``
+    [m/s]: -1 to 1. Tyres that roll yield sideways before they slide.
     """
-    segment.inertia = inertia if params.kinetic else 0.0
-    segment.constant = params.constant
-    if not params.per_wheel:
-        one = two = 0.0 if segment.kind == TURN else 1.0
-    segment.quadratic = 0.5 * params.quadratic * (one * one + two * two)
-    segment.linear = 0.5 * params.linear * (abs(one) + abs(two))
+    most = onset * abs(speed) + 0.02
+    return min(max(turn / most, -1.0), 1.0)
 
 
 @kernel
-def _limit(segment, params):
-    """Set how fast a segment may be driven, and what that costs."""
-    moment = 0.5 * params.mass * params.radius * params.radius  # of a solid disc [kg m²]
+def _limit(segment, params, build):
+    """Set how fast a segment may be driven, and how fast that may change."""
     if segment.kind == TURN:
         segment.limit, segment.rate = params.turn_rate, params.turn_acceleration
-        _pay(segment, params, params.half_track, params.half_track, moment)
         return
     segment.limit, segment.rate = params.cruise, params.acceleration
-    if segment.kind == LINE or params.holonomic:
-        _pay(segment, params, 1.0, 1.0, params.mass)
+    if segment.kind == LINE:
         return
-    segment.limit = min(segment.limit, GRIP * params.turn_rate * segment.radius)
-    lever = params.half_track / segment.radius
-    inertia = params.mass + moment / (segment.radius * segment.radius)
-    _pay(segment, params, 1.0 + lever, 1.0 - lever, inertia)
+    segment.limit = min(segment.limit, math.sqrt(params.cornering * segment.radius))
+    if params.holonomic:
+        return
+    segment.limit = min(segment.limit, TURN_SHARE * params.turn_rate * segment.radius)
+    share = min(1.0, 1.0 / (segment.radius * params.onset))
+    needed = share * build.scrub / params.half_track  # by both wheels [N]
+    segment.rate = max(0.1 * segment.rate, segment.rate - FORCE_SHARE * needed / build.mass)
 
 
 @kernel
-def brake_back(mover, segments):
+def _brake_back(segments, first, end):
     """Set how fast each segment may end, so that what comes after can be kept, to a stop."""
     entry = 0.0
-    for k in range(mover.count - 1, mover.segment - 1, -1):
-        segment = segments[mover.slot, k]
+    for k in range(end - 1, first - 1, -1):
+        segment = segments[k]
         segment.exit = min(entry, segment.limit)
         entry = math.sqrt(segment.exit * segment.exit + 2.0 * segment.rate * segment.length)
         entry = min(entry, segment.limit)
-        if k > 0 and segments[mover.slot, k - 1].kind == TURN:
+        if k > 0 and segments[k - 1].kind == TURN:
             entry = 0.0
 
 
 @kernel
-def set_off(mover, segments, end, params):
-    """Prepare ``mover`` and its path, segments 1 to ``end``, for the drive from where it stands."""
-    mover.count, mover.segment, mover.along, mover.speed, mover.astern = end, 1, 0.0, 0.0, 0.0
-    mover.off_path, mover.best, mover.since = 0, math.inf, 0
-    mover.vx = mover.vy = mover.spin = 0.0
-    if end > 1 and not params.holonomic:
-        turn, first = segments[mover.slot, 0], segments[mover.slot, 1]
-        away = abs(wrapped(heading_at(first, 0.0) - mover.heading))
-        if params.reverse and away > 0.5 * math.pi:
-            mover.astern = math.pi
-        if _turn_first(turn, first, mover.x, mover.y, mover.heading + mover.astern):
-            mover.segment = 0
-    for k in range(mover.segment, end):
-        _limit(segments[mover.slot, k], params)
-    brake_back(mover, segments)
+def profiled(segments, path, x, y, heading, params, build):
+    """Copy ``path`` into ``segments`` from 1 on, and set its speeds for a drive from rest at
+    (x, y) [m] and ``heading`` [rad].
+
+    Returns (where it begins, 0 if there is something to turn first; whether it is driven
+    backwards).
+    """
+    first, end, astern = 1, len(path) + 1, False
+    for k in range(1, end):
+        segments[k] = path[k - 1]
+    if not params.holonomic:
+        away = abs(wrapped(heading_at(segments[1], 0.0) - heading))
+        astern = params.reverse != 0 and away > 0.5 * math.pi
+        facing = heading + math.pi if astern else heading
+        if _turn_first(segments[0], segments[1], x, y, facing):
+            first = 0
+    for k in range(first, end):
+        _limit(segments[k], params, build)
+    _brake_back(segments, first, end)
+    return first, astern
+
+
+@kernel
+def stretch(segment, along, speed):
+    """The next stretch on a segment: (final speed, duration [s], how far it leads [m or rad]).
+
+    It is driven by speeding up, keeping speed or braking, whatever comes first; speed changes
+    evenly in it. ``left`` is what there is to go on the segment. Speeding up all the way would
+    end with the square of the speed ``most`` higher; if that is more than the exit speed allows,
+    speeding up must end halfway between the squares of both.
+    """
+    left = segment.length - along
+    to_exit = 0.5 * (speed * speed - segment.exit * segment.exit) / segment.rate
+    if to_exit >= left - NEAR:
+        last = segment.exit
+        if to_exit > left + NEAR:  # it is too fast for what comes
+            last = math.sqrt(max(0.0, speed * speed - 2.0 * segment.rate * left))
+        return last, (speed - last) / segment.rate, left
+    if speed > segment.limit:
+        far = 0.5 * (speed * speed - segment.limit * segment.limit) / segment.rate
+        return segment.limit, (speed - segment.limit) / segment.rate, min(far, left)
+    if speed == segment.limit:
+        return speed, (left - to_exit) / speed, left - to_exit
+    most = speed * speed + 2.0 * segment.rate * left
+    square = min(most, 0.5 * (most + segment.exit * segment.exit))
+    if square > segment.limit * segment.limit:
+        last = segment.limit
+        far = 0.5 * (last * last - speed * speed) / segment.rate
+    else:
+        last = math.sqrt(square)
+        far = left if square == most else 0.5 * (square - speed * speed) / segment.rate
+    return last, (last - speed) / segment.rate, far

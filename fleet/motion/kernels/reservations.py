@@ -2,18 +2,16 @@
 
 A track is a list of knots: where the robot will be at the ticks of one clock for all, one tick
 every ``params.stride`` steps. Between two knots it is taken to move evenly; the gap that robots
-keep has room for the difference. Two reservations are in conflict if the robots come nearer to each
-other than the gap while one of them drives. Nobody's path leads through where others rest or
-will rest, so a robot that waits is safe from everybody, and its track is free at the latest when
-all others have arrived: nobody waits forever.
+keep has room for the difference, and for how far a robot may be from its reference. Two tracks are
+in conflict if the robots come nearer to each other than the gap while one of them drives. Nobody's
+path leads through where others rest or will rest, so a robot that waits is safe from everybody, and
+its track is free at the latest when all others have arrived: nobody waits forever.
 """
 
 from __future__ import annotations
 
 import math
 
-from fleet.motion.kernels.drive import coast, drive
-from fleet.motion.kernels.records import DRIVING
 from protocols.compiled import kernel
 
 
@@ -26,9 +24,8 @@ def bound(mover, boxes):
 
 @kernel
 def _note(mover, reservations, boxes, x, y):
-    """Add (x, y) [m] to the track, if there is room, and to its bounds."""
-    if mover.knots < reservations.shape[1]:
-        reservations[mover.slot, mover.knots, 0], reservations[mover.slot, mover.knots, 1] = x, y
+    """Add (x, y) [m] to the track, and to its bounds."""
+    reservations[mover.slot, mover.knots, 0], reservations[mover.slot, mover.knots, 1] = x, y
     mover.knots += 1
     box = boxes[mover.slot]
     box[0], box[1] = min(box[0], x), min(box[1], y)
@@ -36,27 +33,31 @@ def _note(mover, reservations, boxes, x, y):
 
 
 @kernel
-def foresee(mover, ghost, segments, reservations, boxes, params, step):
-    """Drive a ghost of ``mover`` to its end from ``step`` on, and keep its track.
+def foresee(mover, reference, reservations, boxes, params, step):
+    """Keep the track of ``mover`` along its ``reference`` from ``step`` on.
 
-    The mover gets the track's clock, length and bounds; ``ghost``, a record, ends as it will.
-    If there are more knots than a track has room for, the rest is not kept.
+    Its body is at the first sample after that step. Returns how many knots the track has; if there
+    is no room for so many, none are kept.
     """
-    mover.first, mover.knots = step // params.stride, 0
-    tick = params.stride * params.dt
-    gone = (step - mover.first * params.stride) * params.dt
+    stride = params.stride
+    mover.first, mover.knots = (step + 1) // stride, 0
+    gone = step + 1 - mover.first * stride
+    last = mover.count - 1
+    needed = (last + gone + stride - 1) // stride + 1
+    if needed > reservations.shape[1]:
+        return needed
     bound(mover, boxes)
-    ghost.phase = DRIVING
-    drive(ghost, segments, params, tick - gone)
-    coast(ghost, tick - gone, 1)
-    back = gone / (tick - gone)  # the first knot lies in the past
-    x, y = mover.x - back * (ghost.x - mover.x), mover.y - back * (ghost.y - mover.y)
-    _note(mover, reservations, boxes, x, y)
-    _note(mover, reservations, boxes, ghost.x, ghost.y)
-    while ghost.phase == DRIVING:
-        drive(ghost, segments, params, tick)
-        coast(ghost, tick, 1)
-        _note(mover, reservations, boxes, ghost.x, ghost.y)
+    x, y = reference[0, 0], reference[0, 1]
+    after = min(1, last)
+    # the first knot lies in the past
+    _note(
+        mover, reservations, boxes,
+        x - gone * (reference[after, 0] - x), y - gone * (reference[after, 1] - y),
+    )  # fmt: skip
+    for knot in range(1, needed):
+        k = min(knot * stride - gone, last)
+        _note(mover, reservations, boxes, reference[k, 0], reference[k, 1])
+    return needed
 
 
 @kernel

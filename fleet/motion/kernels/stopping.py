@@ -3,44 +3,29 @@
 from __future__ import annotations
 
 from fleet.motion.kernels.grid import put
-from fleet.motion.kernels.profile import brake_back
 from fleet.motion.kernels.records import DRIVING, Floor, IntArray, Traffic
+from fleet.motion.kernels.reference import cut_short
 from fleet.motion.kernels.reservations import bound, conflict, foresee, neighbours
 from protocols.compiled import kernel
-
-
-@kernel
-def _cut(mover, segments):
-    """Shorten the path to what the mover needs to brake to a stop."""
-    square = mover.speed * mover.speed
-    k, along = mover.segment, mover.along
-    while True:
-        segment = segments[mover.slot, k]
-        needs = 0.5 * square / segment.rate
-        if needs <= segment.length - along or k + 1 == mover.count:
-            segment.length = min(segment.length, along + needs)
-            mover.count = k + 1
-            break
-        square -= 2.0 * segment.rate * (segment.length - along)
-        k, along = k + 1, 0.0
-    brake_back(mover, segments)
 
 
 @kernel
 def stop_short(floor: Floor, traffic: Traffic, slot: int, step: int) -> int:
     """Make the mover in ``slot`` brake on its path from ``step`` on, and reserve where it stops.
 
-    Returns how many knots its track has; if that is more than there is room for, it must be
-    stopped again with more.
+    Returns how many knots its track has.
     """
     mover, params = traffic.movers[slot], traffic.params[0]
-    _cut(mover, traffic.segments)
-    mover.phase = DRIVING
-    traffic.ghost[0] = mover
-    ghost = traffic.ghost[0]
-    foresee(mover, ghost, traffic.segments, traffic.reservations, traffic.boxes, params, step)
-    put(floor, mover.robot, ghost.x, ghost.y)
-    return int(mover.knots)
+    reference = traffic.references[slot]
+    count = cut_short(traffic.references, slot, traffic.draft, mover.count, mover.due, params)
+    for k in range(count):
+        for column in range(4):
+            reference[k, column] = traffic.draft[k, column]
+    mover.phase, mover.stopping, mover.count, mover.due = DRIVING, 1, count, 0.0
+    mover.best, mover.since, mover.late = 0.0, 0.0, 0.0
+    knots = foresee(mover, reference, traffic.reservations, traffic.boxes, params, step)
+    put(floor, mover.robot, reference[count - 1, 0], reference[count - 1, 1])
+    return int(knots)
 
 
 @kernel
@@ -49,8 +34,8 @@ def stand(floor: Floor, traffic: Traffic, slot: int, step: int) -> None:
     parked.
     """
     mover = traffic.movers[slot]
-    mover.speed, mover.awake = 0.0, 0
-    mover.vx = mover.vy = mover.spin = mover.ux = mover.uy = 0.0
+    mover.awake = 0
+    mover.vx = mover.vy = mover.spin = mover.ahead = mover.aside = 0.0
     mover.first, mover.knots = step // traffic.params[0].stride, 1
     traffic.reservations[slot, 0, 0], traffic.reservations[slot, 0, 1] = mover.x, mover.y
     bound(mover, traffic.boxes)

@@ -30,7 +30,7 @@ def still(poses: Poses, at: Moment) -> Frames:
 
 
 def frames(samples: NDArray[np.float64], poses: Poses, at: Moment) -> Frames:
-    """A frame for each time among the ``samples`` (k, 6), which are sorted by it.
+    """A frame for each time among the ``samples`` (k, 8), which are sorted by it.
 
     Robots have their own clocks: each keeps its latest pose until its next sample.
     Brings ``poses`` up to date.

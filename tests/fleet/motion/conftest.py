@@ -29,11 +29,12 @@ def driving():
         headings=None,
         charge=None,
         interval=None,
+        rng=None,
         **options,
     ):
         spec, arena = spec or RobotSpec(), arena or Arena()
         motion = DrivenMotion(
-            spec, arena, DriveOptions(**options), engine=engine, sample_interval=interval
+            spec, arena, DriveOptions(**options), engine=engine, sample_interval=interval, rng=rng
         )
         headings = [0.0] * len(points) if headings is None else headings
         robots = [

@@ -31,7 +31,7 @@ def played(**keys):
 
 IDLE = [
     ({}, {"robot": {"mass": 3.0, "turn_rate": 2.0, "reverse": True, "radius": 0.2}}, "robot.mass"),
-    ({}, {"robot": {"extra": {"kinetic": True, "per_wheel": True}}}, "robot.extra.kinetic"),
+    ({}, {"robot": {"payload": 1.0, "scrub": 1.0}}, "robot.scrub"),
     ({"protocol": "bfs"}, {"search_radius": 1.0}, "search_radius does nothing in 'bfs'"),
     ({}, {"time": {"name": "rounds", "offers": 2}}, "time.offers does nothing"),
     (

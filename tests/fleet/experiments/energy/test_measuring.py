@@ -20,7 +20,7 @@ def trips_of(row):
     return TripTable.of(pa.Table.from_pylist(row["tables"]["trips"]))
 
 
-@pytest.mark.parametrize("cell", [PAPER, "radius 0.2 m", "rooms", "pays its kinetic energy"])
+@pytest.mark.parametrize("cell", [PAPER, "radius 0.2 m", "rooms", "weighs 30 kg"])
 def test_single_tasks_add_up_and_cover_all_distances(cell):
     trips = trips_of(drive_tasks(SINGLE[cell]))
     assert len(trips) == 60
