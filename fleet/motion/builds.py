@@ -43,10 +43,9 @@ def resistance_of(spec: RobotSpec) -> Resistance:
     rolling = power.linear / (cost + heat * viscous)
     warm = 0.5 * heat * rolling * rolling
     if warm > power.constant:
-        most = heat * power.constant / warm
         raise ValueError(
             f"robot windings is {heat} W/N²; at standstill that alone takes {warm:.3g} W of"
-            f" power.constant, {power.constant} W; expected at most about {most:.2g}"
+            f" power.constant, {power.constant} W; expected less"
         )
     return Resistance(rolling, viscous, power.constant - warm)
 

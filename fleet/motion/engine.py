@@ -67,12 +67,6 @@ class Engine:
         """The robot rests: its body cannot be moved."""
         self.bodies[robot].body_type = pymunk.Body.STATIC
 
-    def park_those_over(self, movers: Records, active: IntArray) -> None:
-        """Park the robots whose trips have ended by themselves."""
-        for slot in active:
-            if parks(movers[slot]):
-                self.park(movers[slot]["robot"])
-
     def step(self, floor: Floor, traffic: Traffic, active: IntArray, step: int) -> None:
         """A ``step`` of the ``active`` movers by the public interface."""
         params, builds = traffic.params[0], traffic.builds
@@ -97,6 +91,8 @@ class Engine:
                 vx, vy = body.velocity
                 spin = body.angular_velocity
                 witness(mover, effort, params, build, x, y, body.angle, vx, vy, spin, divided)
+                if parks(mover):
+                    self.park(mover["robot"])
 
     def _push(self, mover: Record, effort: Record, builds: Records) -> None:
         robot = int(mover["robot"])

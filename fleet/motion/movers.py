@@ -211,7 +211,6 @@ class Movers:
                 break
             self._engine.step(self._floor, traffic, active, step + made)
             over = int((traffic.movers["phase"][active] >= ARRIVED).sum())
-            self._engine.park_those_over(traffic.movers, active)
             made += 1
             if sampled:
                 kept = sample(

@@ -12,7 +12,6 @@ from fleet.motion.kernels.grid import put
 from fleet.motion.kernels.records import (
     ARRIVED,
     DRIVING,
-    EMPTY,
     LOST,
     MOVER,
     TOUCHED,
@@ -239,9 +238,12 @@ def _go_by_plan(mover, reference, params, believed, blocked):
 
 @kernel
 def parks(mover: Record) -> bool:
-    """Whether the trip of ``mover`` has ended by itself, so that its body is to be parked."""
-    if mover.awake and ARRIVED <= mover.phase <= EMPTY:
+    """Whether the body of ``mover`` is to be parked at once: its trip has ended by itself, or it
+    does not know how to go on.
+    """
+    if mover.awake and ARRIVED <= mover.phase <= LOST:
         mover.awake = 0
+        mover.vx = mover.vy = mover.spin = 0.0
         return True
     return False
 
@@ -301,6 +303,8 @@ def run(
                         mover, efforts[slot], params, builds[mover.robot], numbers[0], numbers[1],
                         numbers[2], numbers[3], numbers[4], numbers[5], divided,
                     )  # fmt: skip
+                    if parks(mover):
+                        park_body(calls, bodies[mover.robot])
         for k in range(len(active)):
             mover = movers[active[k]]
             if not engine and sets_off(mover, params, step + made):
@@ -309,8 +313,6 @@ def run(
                 _go_by_plan(mover, references[active[k]], params, believed, blocked)
             if mover.phase >= ARRIVED:
                 over += 1
-                if parks(mover) and engine:
-                    park_body(calls, bodies[mover.robot])
         made += 1
         if params.sample > 0:
             kept = sample(movers, references, params, active, samples, kept, step + made)

@@ -13,6 +13,7 @@ from protocols.compiled import kernel
 
 TURNS = 8  # of the iteration, at most
 SETTLED = 1e-13  # [N·s] a change below this ends it
+NOTHING = 1e-15  # [N·m·s] of scrub below this is none
 
 
 @kernel
@@ -38,7 +39,7 @@ def _resist(mover, effort, build, params, speed, step, pace):
     u = speed + (push_left + push_right) * lighter
     w = spin + (push_right - push_left) * nimbler
     soft = scrub = 0.0
-    if most_scrub > 0.0:
+    if most_scrub > NOTHING:
         soft = params.onset * abs(speed) / most_scrub
         scrub = clipped(w / (inert + soft), most_scrub)
         w -= scrub * inert
@@ -95,10 +96,11 @@ def push(mover, effort, params, build, believed, step, pace):
         net_left, net_right = held_left, held_right
         u = speed + (net_left + net_right) * step / build.mass
         w = mover.spin + h * (net_right - net_left) * step / build.inertia
-        soft = params.onset * abs(speed) / max(build.scrub * step, 1e-300)
-        scrub = clipped(w / (1.0 / build.inertia + soft), build.scrub * step)
-        w -= scrub / build.inertia
-        effort.scrub = scrub / step
+        most = build.scrub * step
+        soft = params.onset * abs(speed) / max(most, NOTHING)
+        scrub = clipped(w / (build.per_inertia + soft), most)
+        w -= scrub * build.per_inertia
+        effort.scrub = scrub * pace
     ahead = net_left + net_right
     effort.torque = h * (net_right - net_left) - effort.scrub
     half = 0.5 * w * step

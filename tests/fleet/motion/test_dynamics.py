@@ -288,8 +288,8 @@ def test_whatever_the_robot_the_ledger_closes_and_nobody_is_lost(
         for trip in motion.advance(motion.now + 2.0):
             assert trip.outcome in ("arrived", "no path", "stuck")
             assert fsum(trip.accounts) == pytest.approx(trip.energy, abs=1e-9)
-            lost = [trip.accounts.rolling, trip.accounts.viscous, trip.accounts.slip]
-            assert min(lost) >= -1e-9
+            assert min(trip.accounts.rolling, trip.accounts.viscous) >= -1e-9
+            assert trip.accounts.slip >= -1e-4 * trip.energy  # side grip turns, but for rounding
         places = np.array([robot.position for robot in robots])
         assert least_gap(places, radius, motion._arena) > -0.001
         assert motion.now < 2000.0
@@ -298,15 +298,15 @@ def test_whatever_the_robot_the_ledger_closes_and_nobody_is_lost(
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"motor": 2.0}, "robot motor is 2.0 N; at 0.76 m/s its resistance takes 4.1.* N of each"),
+        ({"motor": 2.0}, "robot motor is 2.0 N; at 0.76 m/s its resistance takes 4.25 N of each"),
         ({"scrub": 30.0}, "robot traction is 0.7; .* cannot turn against a scrub of 30.0 N·m"),
         (
             {"scrub": 5.0, "motor": 20.0},
-            "robot motor is 20.0 N; .* enough for 66.7 N of each wheel",
+            "robot motor is 20.0 N; .* enough for 33.3 N of each wheel",
         ),
         (
-            {"windings": 1.0},
-            "robot windings is 1.0 W/N²; .* power.constant, 3.66 W; expected at most",
+            {"windings": 20.0},
+            "robot windings is 20.0 W/N²; .* power.constant, 3.66 W; expected less",
         ),
     ],
 )

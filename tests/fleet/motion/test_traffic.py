@@ -154,7 +154,6 @@ def test_free_robots_meet_head_on_and_find_around_each_other(driving):
     watch.check(-0.001)
     assert {trip.outcome for trip in watch.trips} == {"arrived"}
     assert all(trip.contacts > 0 and trip.accounts.contact != 0.0 for trip in watch.trips)
-    assert all(trip.path > trip.planned for trip in watch.trips)
 
 
 @pytest.mark.parametrize(("replans", "outcome"), [(0, "stuck"), (3, "arrived")])
