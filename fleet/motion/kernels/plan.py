@@ -26,7 +26,7 @@ TOUCH = 1e-9  # [m] a robot starts this far off what it touches
 
 
 @kernel
-def _squeeze(floor, me, x, y, clearance, saved):
+def squeeze(floor, me, x, y, clearance, saved):
     """Shrink what stands nearer to the start than ``clearance`` [m], so that it is just outside.
 
     ``saved`` (k, 2): which, and its core before [m]; returns how many. Discs come first, edges
@@ -53,7 +53,8 @@ def _squeeze(floor, me, x, y, clearance, saved):
 
 
 @kernel
-def _unsqueeze(floor, saved, count):
+def unsqueeze(floor, saved, count):
+    """Let what was squeezed be as it was."""
     for k in range(count):
         which = int(saved[k, 0])
         if which < len(floor.discs):
@@ -63,7 +64,7 @@ def _unsqueeze(floor, saved, count):
 
 
 @kernel
-def _disc_hit(segment, disc, radius):
+def disc_hit(segment, disc, radius):
     """Whether a segment of path comes nearer to a disc's centre than ``radius`` [m]."""
     if segment.kind == LINE:
         bx, by = segment.x + segment.length * segment.cos, segment.y + segment.length * segment.sin
@@ -121,7 +122,7 @@ def _obstruct(floor, me, segments, first, last, clearance, known, count):
         near = discs_near(floor, me, segment.x, segment.y, bx, by, reach + radius + margin)
         for k in range(near):
             disc = floor.near[k]
-            if _disc_hit(segment, floor.discs[disc], floor.discs[disc].core + margin):
+            if disc_hit(segment, floor.discs[disc], floor.discs[disc].core + margin):
                 count = _avoid_disc(floor, disc, known, count)
         near = edges_near(floor, segment.x, segment.y, bx, by, reach + margin, 0)
         for k in range(near):
@@ -212,11 +213,11 @@ def plan(
         margin = grid.radius + clearances[k]
         box[0], box[1] = min(margin, sx), max(grid.width - margin, sx)
         box[2], box[3] = min(margin, sy), max(grid.height - margin, sy)
-        squeezed = _squeeze(floor, me, sx, sy, clearances[k], saved)
+        squeezed = squeeze(floor, me, sx, sy, clearances[k], saved)
         exists, gx, gy = free_point(floor, me, sx, sy, x, y, clearances[k], box)
         if exists:
             end = _shortest_path(floor, me, sx, sy, gx, gy, clearances[k], box, segments, 1)
-        _unsqueeze(floor, saved, squeezed)
+        unsqueeze(floor, saved, squeezed)
         if end != NO_PATH:
             break
     length = 0.0

@@ -37,7 +37,7 @@ NODE = record_type(
 
 
 @kernel
-def _push(keys, items, size, key, item):
+def push(keys, items, size, key, item):
     """Into the heap ``keys``, ``items`` of ``size``; there must be room."""
     at = size
     while at > 0 and keys[(at - 1) // 2] > key:
@@ -47,7 +47,7 @@ def _push(keys, items, size, key, item):
 
 
 @kernel
-def _pop(keys, items, size):
+def pop(keys, items, size):
     """Take the smallest out of the heap; its item is returned."""
     top = items[0]
     key, item = keys[size - 1], items[size - 1]
@@ -67,7 +67,7 @@ def _pop(keys, items, size):
 
 
 @kernel
-def _sweep(side, first, last):
+def sweep_between(side, first, last):
     """From angle to angle [rad] on ``side``; hardly anything back counts as nothing."""
     sweep = turned(side * (last - first))
     return 0.0 if sweep > TWO_PI - GRAZE else sweep
@@ -101,7 +101,7 @@ def _beaten(circles, sides, side_count, nodes, node, settled):
     circle = circles[node.circle]
     while k != NOBODY:
         rival = nodes[k]
-        sweep = _sweep(node.side, rival.arrival, node.arrival)
+        sweep = sweep_between(node.side, rival.arrival, node.arrival)
         if sweep <= rival.reach and rival.cost + circle.radius * sweep <= node.cost + SHORT:
             first = rival.arrival if node.side > 0 else rival.arrival - sweep
             if arc_is_free(circle.x, circle.y, circle.radius, first, sweep, sides, side_count):
@@ -140,7 +140,7 @@ def shortest(circles, count, sides, side_count, box):
     keys[0], items[0] = 0.0, 0
     made, waiting = 1, 1
     while waiting > 0:
-        at = _pop(keys, items, waiting)
+        at = pop(keys, items, waiting)
         waiting -= 1
         node = nodes[at]
         around, side = node.circle, node.side
@@ -189,10 +189,13 @@ def _spread(circles, count, box, nodes, at, shut, keys, items, made, waiting):
             here = 2 * other + (1 if arriving > 0 else 0)
             if shut[2 * node.circle + (1 if node.side > 0 else 0), here]:
                 continue
-            exists, departure, arrival = tangent(circle, leaving, circles[other], arriving)
+            end = circles[other]
+            exists, departure, arrival = tangent(
+                circle.x, circle.y, circle.radius, leaving, end.x, end.y, end.radius, arriving
+            )
             if not exists:
                 continue
-            sweep = 0.0 if node.circle == START else _sweep(leaving, node.arrival, departure)
+            sweep = 0.0 if node.circle == START else sweep_between(leaving, node.arrival, departure)
             if sweep > node.reach + GRAZE:
                 continue
             x = circles[other].x + circles[other].radius * math.cos(arrival)
@@ -206,7 +209,7 @@ def _spread(circles, count, box, nodes, at, shut, keys, items, made, waiting):
             new.parent, new.departure, new.sweep = at, departure, sweep
             new.cost = node.cost + circle.radius * sweep + math.hypot(x - fx, y - fy)
             new.before = NOBODY
-            _push(keys, items, waiting, new.cost + math.hypot(goal.x - x, goal.y - y), made)
+            push(keys, items, waiting, new.cost + math.hypot(goal.x - x, goal.y - y), made)
             made += 1
             waiting += 1
     return made, waiting

@@ -23,23 +23,23 @@ GRAZE = 1e-7  # [m], [rad] paths may touch what they go around, and this much mo
 
 
 @kernel
-def tangent(one, side_one, two, side_two):
-    """Where the line leaves circle ``one`` and where it meets ``two``: (exists, angle, angle).
+def tangent(x, y, radius, side, x2, y2, radius2, side2):
+    """Where the line leaves the first circle and meets the second: (exists, angle, angle).
 
     Both centres lie on known sides of the line, at the distance of their radii: so the angle
     between the line's normal and the line of centres is the arc cosine of the difference
     (same sides) or the sum (different sides) of the radii, by the distance of the centres.
     """
-    dx, dy = two.x - one.x, two.y - one.y
+    dx, dy = x2 - x, y2 - y
     distance = math.hypot(dx, dy)
-    same = side_one == side_two
-    across = one.radius - two.radius if same else one.radius + two.radius
+    same = side == side2
+    across = radius - radius2 if same else radius + radius2
     if abs(across) > distance:
         # a point on a circle, within rounding, counts as on it
         if abs(across) > distance + GRAZE or distance == 0.0:
             return False, 0.0, 0.0
         across = math.copysign(distance, across)
-    leaves = math.atan2(dy, dx) - side_one * math.acos(across / distance)
+    leaves = math.atan2(dy, dx) - side * math.acos(across / distance)
     return True, leaves, leaves if same else leaves + math.pi
 
 
