@@ -110,14 +110,17 @@ def ask(
     is; with ``count`` those who have none to make answer too.
     """
 
+    def better(bid: Bid | None) -> Bid | None:
+        return min((one for one in (bid, best) if one is not None), default=None)
+
     def to_beat(robot: RobotId) -> Bid | None:
-        own = offer(view[robot], event, metric)
-        return min((bid for bid in (own, best) if bid is not None), default=None)
+        return better(offer(view[robot], event, metric))
 
     tree = yield from call(view, auctioneer, AuctionRules(hops=hops), to_beat)
+    own = {robot: offer(view[robot], event, metric) for robot in (auctioneer, *tree)}
     offers = []
     for robot, caller in tree.items():
-        bid, limit = offer(view[robot], event, metric), to_beat(caller)
+        bid, limit = own[robot], better(own[caller])
         if bid is not None and (limit is None or bid < limit):
             offers.append(bid)
     answers = 0

@@ -132,7 +132,9 @@ def walk_face(
     """Walk the face that the ray from ``start`` to ``site`` enters, until something is found.
 
     Returns the first robot entered that is within the search radius or, ``until_nearer``,
-    nearer to the site than ``start``; else the robot where the walk closed.
+    nearer to the site than ``start``; else the robot where the walk closed. Where links are no
+    disc, or known at one end alone, a walk may run into its own middle: the packet, which knows
+    the edges that it has passed, then tries the other hand, and no edge a second time.
     """
     origin = view[start].position
     entry = squared_distance(origin, site)
@@ -142,6 +144,8 @@ def walk_face(
     reference = bearing(origin, site)
     crossed = entry  # squared distance from the site to the last change of face
     first: tuple[RobotId, RobotId] | None = None
+    walked: set[tuple[RobotId, RobotId]] = set()  # since the last change of face
+    turned = False
     seen = {start}
     while True:
         me = view[here]
@@ -154,15 +158,21 @@ def walk_face(
         if cut is not None and squared_distance(cut, site) < crossed:
             crossed = squared_distance(cut, site)
             first = None
+            walked.clear()
             if _enters_before(search, me, ahead, site, left):
                 reference, came_from = bearing(me.position, me.neighbours[ahead]), ahead
                 continue
             left = not left
-        if (here, ahead) == first or (search.stop == "node" and ahead in seen):
+        again = (here, ahead) in walked
+        if again and not turned and (here, ahead) != first:
+            left, turned = not left, True
+            continue
+        if again or (search.stop == "node" and ahead in seen):
             return here
         if not (yield Transmission("route-face", here, ahead)):
             continue
         first = first or (here, ahead)
+        walked.add((here, ahead))
         behind = me.position
         here, came_from = ahead, here
         seen.add(here)

@@ -7,7 +7,7 @@ from functools import partial
 import pytest
 from hand_drawn import PER_METRE, StillRobot, converse, network
 
-from protocols.auctions import AuctionRules
+from protocols.auctions import AuctionRules, iterated_auction
 from protocols.auctions import auction as hold
 from protocols.messages import Award, Event
 from protocols.metrics import distance, energy_left
@@ -116,3 +116,40 @@ def test_exactly_enough_is_enough(short):
     near = PER_METRE * 0.5 - short
     view = network([(0.0, 0.0), (1.0, 0.0)], 1.1, energy=[0.0, near])
     assert (auction(view).award.winner == 1) == (short == 0.0)
+
+
+def test_an_equal_bid_is_not_sent():
+    """Both would spend the same; the call says what is to be bettered, and silence is agreement."""
+    pair = network([(0.0, 0.0), (1.0, 0.0)], 1.5, energy=100.0)
+    rules = AuctionRules(reserve=True, auctioneer_bids=True)
+
+    def protocol(view, event, source):
+        return (yield from hold(view, source, event, distance, rules))
+
+    halfway = converse(protocol, pair, (0.5, 0.0), 0)
+    assert halfway.said("bid") == []
+    assert halfway.award.winner == 0
+    assert converse(protocol, pair, (0.51, 0.0), 0).said("bid") == [(1, 0)]
+
+
+def test_an_equal_bid_does_not_outbid():
+    pair = network([(0.0, 0.0), (1.0, 0.0)], 1.5, energy=100.0)
+    rules = AuctionRules(outbid=True, auctioneer_bids=True)
+
+    def protocol(view, event, source):
+        return (yield from hold(view, source, event, distance, rules))
+
+    assert converse(protocol, pair, (0.5, 0.0), 0).said("bid") == []
+    assert converse(protocol, pair, (0.51, 0.0), 0).said("bid") == [(1, 0)]
+
+
+def test_bids_of_earlier_auctions_stay_in_the_award():
+    """0 assigns to 1, which finds 2 to be better still."""
+    line = network([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], 1.2, energy=[60.0, 80.0, 100.0])
+
+    def protocol(view, event, source):
+        return (yield from iterated_auction(view, source, event, energy_left))
+
+    award = converse(protocol, line, (1.0, 0.1), 0).award
+    assert award.winner == 2
+    assert [bid.robot for bid in award.bids] == [1, 2]

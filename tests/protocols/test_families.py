@@ -203,3 +203,19 @@ def test_assignment_also_minimises_metrics_that_are_negative():
     view = network([(0.0, 0.0), (1.0, 0.0)], 2.0, energy=[100, 30])
     assert assign_all(view, [Event(0, (0.5, 0.0))], energy_left) == {0: 0}
     assert view[0].cost_to((0.5, 0.0)) == pytest.approx(0.5 * PER_METRE)
+
+
+@pytest.mark.parametrize(
+    ("able", "wanted", "depth"),
+    [(1, 8, 3), (2, 8, 2), (4, 8, 2), (4, 4, 1), (1, 17, 4), (1, 16, 4), (1, 100, 4), (0, 4, 2)],
+)
+def test_after_aap_the_depth_follows_from_the_first_bids(able, wanted, depth):
+    """k = √(wanted/b) for b bids at one hop, rounded up, at most 4: a star of four arms."""
+    arms = [(1, 0), (0, 1), (-1, 0), (0, -1)]
+    points = [(0.0, 0.0), *((k * x, k * y) for k in range(1, 7) for x, y in arms)]
+    energy = [100.0] + [100.0 if k < able else 0.1 for k in range(4)] + [0.1] * 20
+    view = network([(float(x), float(y)) for x, y in points], 1.1, energy=energy)
+    talk = converse(partial(aap, wanted=wanted), view, (0.0, 0.0), 0)
+    calls = [t.sender for t, _ in talk.transcript if t.kind == "call"]
+    second = calls[1:]  # the first ring's call is the auctioneer's alone
+    assert len(second) == (0 if depth == 1 else 1 + 4 * (depth - 1))

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 import pytest
 from hand_drawn import converse, network, random_connected, random_points
 
+from fleet.experiments.paper.theory import lemma_1_bound
 from protocols.rfta import rfta2, rfta2ge
 
 
 @pytest.mark.parametrize(("radius", "bound"), [(1.0, 0.54), (2.0, 0.96), (3.0, 1.0), (4.0, 1.0)])
 def test_lemma_1_bounds_the_chance_of_a_robot_near_the_event(radius, bound):
     """P(R) ≥ 1 − (1 − πR²/4)^(N−1) for N = 100 in the unit square, here 10 m wide."""
-    formula = 1.0 - (1.0 - pi * (radius / 10.0) ** 2 / 4.0) ** 99
+    formula = lemma_1_bound(radius)
     assert formula == pytest.approx(bound, abs=0.005)
     rng = np.random.default_rng(1)
     hits = 0

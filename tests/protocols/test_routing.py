@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from protocols.geometry import crossing
 from protocols.messages import Event, Point
-from protocols.routing import WHOLE_FACE, Search, deliver, find, greedy
+from protocols.routing import WHOLE_FACE, Search, deliver, find, greedy, walk_face
 
 # Placement of INET's MANET-protocols GPSR showcase (ManetprotocolsShowcaseA); y points down there.
 SHOWCASE = {
@@ -238,3 +238,32 @@ def test_alone_in_the_world():
 def test_search_radius_must_not_be_negative(radius):
     with pytest.raises(ValueError, match="search radius"):
         Search(radius=radius)
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_no_packet_goes_round_a_circle_twice_where_links_are_one_way(hand):
+    """0 hears 1, and 1, 2, 3 go round in a ring that never comes back to 0."""
+    places = [(0.0, 0.0), (-1.0, 0.0), (-2.0, 1.0), (-2.0, -1.0)]
+    ahead = {0: 1, 1: 2, 2: 3, 3: 1}
+    view = [
+        StillRobot(robot, place, 100.0, {ahead[robot]: places[ahead[robot]]})
+        for robot, place in enumerate(places)
+    ]
+    talk = routed(walk_face, view, 0, (9.0, 0.0), Search(radius=0.0, hand=hand))
+    edges = [(t.sender, t.receiver) for t, _ in talk.transcript]
+    assert edges == [(0, 1), (1, 2), (2, 3), (3, 1)]
+
+
+def test_a_walk_that_ran_into_its_middle_tries_the_other_hand():
+    """By the right hand 1 is left for 2 and 3, which leads back to 1; by the left for 4, nearer."""
+    places = [(0.0, 0.0), (-1.0, 0.0), (-1.0, 1.0), (-2.0, 0.5), (1.0, -1.0)]
+    links = {0: (1,), 1: (2, 4), 2: (3,), 3: (1,), 4: (1,)}
+    view = [
+        StillRobot(robot, place, 100.0, {other: places[other] for other in links[robot]})
+        for robot, place in enumerate(places)
+    ]
+    ends = {
+        hand: routed(walk_face, view, 0, (9.0, 0.0), Search(radius=0.0, hand=hand)).award
+        for hand in ("right", "left")
+    }
+    assert ends == {"right": 4, "left": 4}

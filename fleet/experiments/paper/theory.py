@@ -81,10 +81,18 @@ def _threshold(rng: np.random.Generator) -> Claim:
     )  # fmt: skip
 
 
+def lemma_1_bound(radius: float) -> float:
+    """The least chance of a robot within ``radius`` [m] of an event in the 10 m square, Lemma 1.
+
+    An event in a corner has a quarter of its disc on the floor.
+    """
+    return 1.0 - (1.0 - pi * (radius / 10.0) ** 2 / 4.0) ** (ROBOTS - 1)
+
+
 def _lemma_1(rng: np.random.Generator) -> Iterator[Claim]:
     bounds, measured = [], []
     for radius in (1.0, 2.0, 3.0, 4.0):
-        bounds.append(1.0 - (1.0 - pi * (radius / 10.0) ** 2 / 4.0) ** (ROBOTS - 1))
+        bounds.append(lemma_1_bound(radius))
         hits = 0
         for _ in range(1000):
             points = rng.uniform(0.0, 10.0, (ROBOTS, 2))

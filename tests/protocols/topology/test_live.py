@@ -226,3 +226,9 @@ def test_tables_that_were_read_stay_as_they_were():
 def test_bad_input_is_named(radio_range, graph):
     with pytest.raises(ValueError, match="expected"):
         Topology([(0.0, 0.0)], radio_range, graph)
+
+
+def test_ties_of_the_spanning_tree_go_to_lower_ids():
+    square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    assert edges(square, 1.2, "emst").tolist() == [[0, 1], [0, 3], [1, 2]]
+    assert edges(square[[2, 3, 0, 1]], 1.2, "emst").tolist() == [[0, 1], [0, 3], [1, 2]]
