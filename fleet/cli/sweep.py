@@ -17,6 +17,9 @@ from fleet.cli.resuming import conclude, progress, resumable, this_command
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [all cores]")
 @click.option("--scheduler", metavar="ADDRESS",
               help="A Dask scheduler to run on, such as tcp://127.0.0.1:8786.")  # fmt: skip
+@click.option("--until", metavar="TARGET", default="",
+              help="Add seeds until a measure is known so well everywhere, as 'lifetime ±2%'; +- "
+                   "will do.")  # fmt: skip
 @click.option("--limit", type=click.FloatRange(min=0.0, min_open=True), metavar="SECONDS",
               help="End a run that takes longer; it counts as failed.  [3600]")  # fmt: skip
 @click.option("--retry", is_flag=True, help="Run those again that failed.")
@@ -25,6 +28,7 @@ def command(
     out: Path,
     workers: int | None,
     scheduler: str | None,
+    until: str,
     limit: float | None,
     retry: bool,
 ) -> None:
@@ -43,6 +47,6 @@ def command(
         with progress("sweep") as show:
             result = sweep(
                 study, out, workers=workers, scheduler=scheduler, retry=retry,
-                limit=limit or LIMIT, progress=show, say=say, command=this_command(),
+                limit=limit or LIMIT, until=until, progress=show, say=say, command=this_command(),
             )  # fmt: skip
         conclude(result)

@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from fleet.study.design import Study
+from fleet.study.ledger import NAME, reading
 from fleet.study.local import LIMIT
 from fleet.study.result import StudyResult
 from fleet.study.runner import Progress, Say, run_jobs, silent
 from fleet.study.study_file import load_study, study_from
+from fleet.study.until import MOST, seeds_there, target, wanted, with_seeds
 
 
 def sweep(
@@ -24,9 +26,13 @@ def sweep(
     say: Say = silent,
     retry: bool = False,
     limit: float | None = LIMIT,
+    until: str = "",
     command: str = "",
 ) -> StudyResult:
     """Run every combination of a study with every seed; go on where the folder stands.
+
+    ``until``, such as ``lifetime ±2%``, adds seeds until that measure's 95 % interval is that
+    narrow in every combination: see :mod:`fleet.study.until`.
 
     ``study`` is a TOML file, tables as one would have, or a :class:`Study`. The other
     parameters are those of :func:`fleet.study.run_jobs`; ``command`` is what the report says
@@ -37,22 +43,39 @@ def sweep(
         BrokenOff: the disk is full, or the Dask scheduler is lost. What is done is kept.
         Interrupted: Ctrl-C or SIGTERM; it is a KeyboardInterrupt. What is done is kept.
     """
-    described = described_by(study)
-    return run_jobs(
-        described.jobs(),
-        out,
-        workers=workers,
-        scheduler=scheduler,
-        progress=progress,
-        say=say,
-        retry=retry,
-        limit=limit,
-        meta={
-            "study": asdict(described) | {"seeds": list(described.seeds)},
-            "source": _source(study),
-            "command": command,
-        },
-    )
+    described, goal = described_by(study), target(until) if until else None
+    source = _source(study)
+    if goal is not None and (Path(out) / NAME).is_file():
+        with reading(Path(out)) as ledger:
+            described = with_seeds(described, seeds_there(ledger.meta(), described))
+    while True:
+        result = run_jobs(
+            described.jobs(),
+            out,
+            workers=workers,
+            scheduler=scheduler,
+            progress=progress,
+            say=say,
+            retry=retry,
+            limit=limit,
+            meta={
+                "study": asdict(described) | {"seeds": list(described.seeds)},
+                "source": source,
+                "until": str(goal or ""),
+                "command": command,
+            },
+        )
+        if goal is None:
+            return result
+        count, half = wanted(result, goal)
+        if count <= len(described.seeds):
+            say(f"{goal.measure} is known to ±{half:.1%} with {len(described.seeds)} seeds")
+            return result
+        if count > MOST:
+            say(f"{goal} takes more than {MOST} seeds; ±{half:.1%} is where it stands")
+            return result
+        say(f"{goal.measure} is known to ±{half:.1%}; {count - len(described.seeds)} seeds more")
+        described = with_seeds(described, count)
 
 
 def _source(study: Study | Mapping[str, Any] | str | Path) -> str:

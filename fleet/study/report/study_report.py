@@ -100,6 +100,7 @@ def _write(folder: Path, path: Path) -> Path:
         summary=_summary(runs, counts),
         source=meta.get("source") or json.dumps(study, indent=2),
         command=meta.get("command", ""),
+        until=meta.get("until", ""),
         made_by=meta.get("made_by", {}),
         palette=list(zip(SERIES, SERIES_DARK, strict=True)),
     )
