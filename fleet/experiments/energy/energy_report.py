@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader
-
 from fleet.experiments.energy import fleet_exhibits, trip_exhibits
 from fleet.experiments.energy.accuracy import accuracy
 from fleet.experiments.energy.exhibits import Exhibit
@@ -16,7 +14,9 @@ from fleet.experiments.energy.lives import Life
 from fleet.experiments.energy.models import CORRECTED, LINE, fit
 from fleet.experiments.energy.settings import ENGINE, NO_INERTIA, PAPER
 from fleet.experiments.energy.trip_table import TripTable
-from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
+from fleet.study.atomic import write_text
+from fleet.study.report.page import write_page
+from fleet.study.report.style import in_style, inline, svg_of
 from fleet.study.version import environment
 
 TITLES = {
@@ -64,24 +64,18 @@ def write_report(
         "settings": on_engine(single),
         "differences": on_bids(listed),
     }
-    template = Environment(
-        loader=PackageLoader("fleet.experiments.energy", "."), autoescape=True, trim_blocks=True,
-        lstrip_blocks=True,
-    ).get_template("report.html.j2")  # fmt: skip
-    page = template.render(
+    return write_page(
+        out / "report.html",
+        "energy.html.j2",
+        "fleet.experiments.energy",
         lead=verdict(found),
         details=details(found),
         exhibits=[(exhibit, figures[exhibit.name]) for exhibit in shown],
-        said=said,
+        said={exhibit.name: said.get(exhibit.name, "") for exhibit in shown},
         titles=TITLES,
         command=command,
         made_by=environment(),
-        palette=list(zip(SERIES, SERIES_DARK, strict=True)),
     )
-    draft, path = out / ".report.html", out / "report.html"
-    draft.write_text(page, "utf-8")
-    draft.replace(path)
-    return path
 
 
 def on_engine(single: TripTable) -> str:
@@ -109,5 +103,5 @@ def _saved(exhibit: Exhibit, folder: Path) -> Any:
         return ""
     exhibit.figure.savefig(folder / f"{exhibit.name}.png", dpi=200)
     svg = svg_of(exhibit.figure)
-    (folder / f"{exhibit.name}.svg").write_text(svg, "utf-8")
+    write_text(folder / f"{exhibit.name}.svg", svg)
     return inline(svg)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -11,6 +10,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from fleet.study.report.csv_files import write_csv
 from fleet.study.statistics import Interval
 
 
@@ -34,21 +34,20 @@ class Exhibit:
 
     def write_csv(self, folder: Path) -> None:
         """The numbers as they are; an interval takes three columns."""
-        with (folder / f"{self.name}.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            wide = [isinstance(value, Interval) for value in self.rows[0]] if self.rows else []
-            head = [
-                name
-                for column, interval in zip(self.columns, wide, strict=True)
-                for name in (
-                    [column.name, f"{column.name}, low", f"{column.name}, high"]
-                    if interval
-                    else [column.name]
-                )
-            ]
-            writer.writerow(head)
-            for row in self.rows:
-                writer.writerow([x for v in row for x in (v if isinstance(v, Interval) else [v])])
+        wide = [isinstance(value, Interval) for value in self.rows[0]] if self.rows else []
+        head = [
+            name
+            for column, interval in zip(self.columns, wide, strict=True)
+            for name in (
+                [column.name, f"{column.name}, low", f"{column.name}, high"]
+                if interval
+                else [column.name]
+            )
+        ]
+        lines = (
+            [x for v in row for x in (v if isinstance(v, Interval) else [v])] for row in self.rows
+        )
+        write_csv(folder / f"{self.name}.csv", head, lines)
 
     def cells(self) -> list[list[str]]:
         """The rows as the page has them."""

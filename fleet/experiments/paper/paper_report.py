@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader
 from numpy.typing import NDArray
 
 from fleet import __version__
@@ -22,6 +20,9 @@ from fleet.experiments.paper.printed_tables import Comparison, compare
 from fleet.experiments.paper.published import MeanSd
 from fleet.experiments.paper.theory import theory_claims
 from fleet.scenario.model import Scenario
+from fleet.study.atomic import write_text
+from fleet.study.report.csv_files import write_csv
+from fleet.study.report.page import write_page
 
 TITLES = {
     "random": "Table 2: after the final round, random topology",
@@ -52,32 +53,27 @@ def write_report(out: Path, results: Results, command: str) -> Path:
     listed = [*theory_claims(), *claims(paper)]
     tables = [_table(results, world, motions) for world in TITLES]
     said = [[c.where, c.says, c.measured, c.verdict, c.rule] for c in listed]
-    _write_csv(out / "claims.csv", ["where", "says", "measured", "verdict", "holds if"], said)
+    write_csv(out / "claims.csv", ["where", "says", "measured", "verdict", "holds if"], said)
     for number, table in zip((2, 3), tables, strict=True):
         lines = [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]]
-        _write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
+        write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
     reached = _beyond(results, motions)
     for table in reached:
-        _write_csv(out / f"{table['stem']}.csv", beyond.HEADER, table["lines"])
-    template = Environment(
-        loader=PackageLoader("fleet.experiments.paper", "."), autoescape=True, trim_blocks=True
-    ).get_template("report.html.j2")
-    page = out / "report.html"
-    page.write_text(
-        template.render(
-            lead=_lead(listed, paper),
-            provenance=_provenance(results, motions),
-            command=command,
-            version=__version__,
-            tables=tables,
-            claims=listed,
-            figures=drawn,
-            beyond=reached,
-            further=further,
-        ),
-        encoding="utf-8",
+        write_csv(out / f"{table['stem']}.csv", beyond.HEADER, table["lines"])
+    return write_page(
+        out / "report.html",
+        "paper.html.j2",
+        "fleet.experiments.paper",
+        lead=_lead(listed, paper),
+        provenance=_provenance(results, motions),
+        command=command,
+        version=__version__,
+        tables=tables,
+        claims=listed,
+        figures=drawn,
+        beyond=reached,
+        further=further,
     )
-    return page
 
 
 def energies_left(motion: str) -> dict[str, NDArray[np.float64]]:
@@ -96,7 +92,7 @@ def _saved(numbered: Numbered, folder: Path, motion: str, label: str) -> dict[st
     text = io.StringIO()
     numbered.figure.savefig(text, format="svg", metadata={"Date": None})
     svg = text.getvalue()
-    (folder / f"{stem}.svg").write_text(svg, encoding="utf-8")
+    write_text(folder / f"{stem}.svg", svg)
     return {
         "number": numbered.number,
         "caption": numbered.caption,
@@ -191,10 +187,3 @@ def _provenance(results: Results, motions: Sequence[str]) -> str:
     )
     networks = len(results.where(series="rfta2", radio_range=2.5).values("seed"))
     return f"{counts}; networks drawn for each range and topology: {networks}."
-
-
-def _write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(header)
-        writer.writerows(rows)

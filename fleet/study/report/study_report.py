@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
 from fleet.scenario.errors import BadInput, bad
@@ -25,9 +24,10 @@ from fleet.study.report import estimates
 from fleet.study.report.conditions import conditions
 from fleet.study.report.derived import PER_SERVED, accounts, derived, uncensored
 from fleet.study.report.layout import Layout, layout
+from fleet.study.report.page import write_page
 from fleet.study.report.quantities import measures, name_of, short_name
 from fleet.study.report.runs import Runs, runs_of
-from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
+from fleet.study.report.style import in_style, inline, svg_of
 from fleet.study.report.text import FEWEST_PAIRS, plain
 from fleet.study.result import StudyResult
 
@@ -88,7 +88,9 @@ def _write(folder: Path, path: Path) -> Path:
     beside.mkdir(exist_ok=True)
     study = meta.get("study", {})
     sections = list(_sections(runs, robots, study.get("report", {}), beside)) if len(runs) else []
-    page = _template().render(
+    return write_page(
+        path,
+        "study.html.j2",
         title=study.get("title") or f"Study in {folder.resolve().name}",
         counts=counts,
         sections=sections,
@@ -102,10 +104,7 @@ def _write(folder: Path, path: Path) -> Path:
         command=meta.get("command", ""),
         until=meta.get("until", ""),
         made_by=meta.get("made_by", {}),
-        palette=list(zip(SERIES, SERIES_DARK, strict=True)),
     )
-    write_text(path, page)
-    return path
 
 
 def _bring_up_to_date(folder: Path) -> None:
@@ -318,11 +317,3 @@ def _summary(runs: Runs, counts: Counts) -> str:
     if cells > 1:
         parts.append(f"{cells} combinations")
     return ", ".join(parts)
-
-
-def _template() -> Any:
-    environment = Environment(
-        loader=PackageLoader("fleet.study.report", "."), autoescape=True, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
-    return environment.get_template("report.html.j2")
