@@ -35,6 +35,7 @@ from fleet.scenario.errors import bad
 from fleet.scenario.model import Scenario
 from fleet.schedule import Schedule
 from fleet.simulation import Simulation
+from protocols.catalogue import PROTOCOLS, metric_of
 from protocols.topology import Topology
 from worlds.catalogue import World
 from worlds.events import Occurrence
@@ -100,9 +101,12 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
     ]  # fmt: skip
     motion.place(robots)
+    known = PROTOCOLS.get(scenario.protocol.name)
+    searches = known is None or known.searches
     labels = RunLabels(
         scenario.protocol.name, scenario.motion.name, scenario.world.name,
-        scenario.seed, scenario.search_radius,
+        scenario.seed, scenario.search_radius, *metric_of(protocol), searches,
+        scenario.motion.parameters.get("belief", "straight"),
     )  # fmt: skip
     handler = make_handler(scenario, world, random)
     fleet = Fleet(labels, world.arena, scenario.robot, robots, topology, radio, handler.field)

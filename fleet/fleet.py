@@ -21,6 +21,10 @@ class RunLabels:
     world: str
     seed: int
     search_radius: float  # [m]
+    metric: str = ""  # what bids are worth, and in what unit
+    unit: str = ""
+    routed: bool = True  # whether the protocol searches for the robot that decides
+    belief: str = "straight"  # what robots believe that a trip costs: see fleet.motion.options
 
 
 @dataclass(frozen=True, slots=True)

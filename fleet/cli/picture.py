@@ -11,7 +11,14 @@ from typing import Any
 
 import click
 
-TIMELINES = {"round": "round", "msg": "msg", "message": "msg", "time": "sim_time"}
+TIMELINES = {
+    "round": "round",
+    "msg": "msg",
+    "message": "msg",
+    "time": "sim_time",
+    "story": "story",
+}
+IN_SECONDS = ("sim_time", "story")
 THEMES = ("light", "dark")
 
 
@@ -32,7 +39,7 @@ class MomentType(click.ParamType[dict[str, float]]):
             moment = float("nan")
         if timeline not in TIMELINES.values() or not isfinite(moment):
             self.fail(f"{value!r} is no moment; expected round=12, msg=345 or sim_time=6.78")
-        if timeline != "sim_time" and not moment.is_integer():
+        if timeline not in IN_SECONDS and not moment.is_integer():
             self.fail(f"{value!r} is no moment; expected a whole number")
         return {timeline: moment}
 

@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun.blueprint.components import AbsoluteTimeRange
 from rerun.blueprint.encodings import ComponentSourceKind, VisualizerComponentMapping
 
 from fleet.replay import scheme
-from fleet.replay.layers.auction_tree import HEIGHT, WIDTH
 from fleet.replay.layers.event_log import DECIDED, FAILED
 from fleet.replay.layers.lifetime import MAP_HEIGHT, MAP_WIDTH
+from fleet.replay.layers.sequence_chart import HEIGHT, WIDTH
+from fleet.replay.table_schemas import SCHEMAS
 
 RIM = 1.3  # radius of the dark rim around a robot, in its radii
+UNPICKABLE = rrb.EntityBehavior(interactive=False)  # robots are what is asked for
 DARK = list(scheme.GROUND_COLOUR)
+
+
+class Span(NamedTuple):
+    """A stretch of the timeline that is scrubbed by [s]."""
+
+    start: float
+    end: float
+
+    def range(self) -> AbsoluteTimeRange:
+        """As Rerun has it, in ns."""
+        return AbsoluteTimeRange(
+            rr.encodings.TimeInt(seconds=self.start), rr.encodings.TimeInt(seconds=self.end)
+        )
 
 
 class Stage(NamedTuple):
@@ -25,7 +41,7 @@ class Stage(NamedTuple):
     height: float  # [m]
     mark: float  # radius that robots are drawn with [m]
     capacity: float  # of the largest battery [J]
-    name: str = "World"
+    name: str  # which run it is
     root: str = ""  # before all paths, with a slash after it
 
     def __call__(self, path: str) -> str:
@@ -33,34 +49,60 @@ class Stage(NamedTuple):
         return f"/{self.root}{path}"
 
 
-def blueprint(stage: Stage, timeline: str = scheme.SIM_TIME) -> rrb.Blueprint:
-    """Two tabs, with ``timeline`` to scrub by."""
-    return _whole(rrb.Tabs(_replay(stage), _lifetime(stage), active_tab=0), timeline)
+def blueprint(
+    stage: Stage, timeline: str = scheme.STORY, span: Span | None = None
+) -> rrb.Blueprint:
+    """Three tabs, with ``timeline`` to scrub by; a ``span`` of it is selected, and played."""
+    tabs = rrb.Tabs(_replay(stage), _lifetime(stage), _tables(stage), active_tab=0)
+    return _whole(tabs, timeline, span)
 
 
-def side_by_side(stages: Sequence[Stage], timeline: str = scheme.ROUND) -> rrb.Blueprint:
-    """Several recordings under one cursor: a column each."""
+def side_by_side(
+    stages: Sequence[Stage], timeline: str = scheme.ROUND, parted: bool = True
+) -> rrb.Blueprint:
+    """Several recordings under one cursor: a column each, and their curves in one plot."""
     now = rrb.Horizontal(
         *(rrb.Vertical(_world(stage), _card(stage), row_shares=[8, 5]) for stage in stages),
         name="Replay",
     )
-    lifetime = rrb.Horizontal(
-        *(
-            rrb.Vertical(_energy_map(stage), _energy(stage), _total_energy(stage), _messages(stage))
-            for stage in stages
-        ),
+    curves = rrb.Grid(
+        *(_shared(stages, name, path, span) for name, path, span in _compared(stages)),
         name="Lifetime",
     )
-    return _whole(rrb.Tabs(now, lifetime, active_tab=0), timeline)
+    difference = rrb.TextDocumentView(origin=scheme.DIFFERENCE, name="Where they part")
+    return _whole(rrb.Tabs(now, curves, *[difference] * parted, active_tab=0), timeline)
 
 
-def _whole(content: rrb.Container, timeline: str) -> rrb.Blueprint:
+def _compared(stages: Sequence[Stage]) -> list[tuple[str, str, tuple[float, float] | None]]:
+    """What is plotted of all recordings in one: names, paths and ranges."""
+    most = max(stage.capacity for stage in stages)
+    return [
+        ("Energy of a robot, mean [J]", scheme.COMPARED_ENERGY, (0.0, most)),
+        ("Energy of all trips so far [J]", scheme.COMPARED_TOTAL, None),
+        ("Messages an event", scheme.COMPARED_MESSAGES, None),
+        ("Robots on the air", scheme.COMPARED_ON_AIR, None),
+    ]
+
+
+def _shared(
+    stages: Sequence[Stage], name: str, path: str, span: tuple[float, float] | None
+) -> rrb.View:
+    return _curves("/", name, "RightTop", span, [f"+ {stage(path)}" for stage in stages])
+
+
+def _whole(content: rrb.Container, timeline: str, span: Span | None = None) -> rrb.Blueprint:
     return rrb.Blueprint(
         content,
         rrb.TopPanel(state="hidden"),
         rrb.BlueprintPanel(state="hidden"),
-        rrb.SelectionPanel(state="hidden"),
-        rrb.TimePanel(state="collapsed", timeline=timeline, play_state="paused"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(
+            state="collapsed",
+            timeline=timeline,
+            play_state="paused" if span is None else "playing",
+            time_selection=None if span is None else span.range(),
+            loop_mode=None if span is None else "selection",
+        ),
         auto_views=False,
         auto_layout=False,
     )
@@ -70,15 +112,26 @@ def _replay(stage: Stage) -> rrb.Container:
     guide = rrb.TextDocumentView(origin=stage(scheme.GUIDE), name="How to read")
     trip = _curves(stage(scheme.TRIP_ENERGY), "Trip [J]")
     return rrb.Horizontal(
-        rrb.Vertical(_world(stage), _phases(stage), row_shares=[85, 15]),
+        rrb.Vertical(_world(stage), _lanes(stage), row_shares=[75, 25]),
         rrb.Vertical(
             rrb.Tabs(_card(stage), guide, active_tab=0),
             rrb.Tabs(_log(stage, decisions=True), _log(stage, decisions=False), active_tab=0),
-            rrb.Tabs(_tree(stage), _messages(stage), trip, active_tab=0),
-            row_shares=[17, 9, 10],
+            rrb.Tabs(_chart(stage), _messages(stage), trip, active_tab=0),
+            row_shares=[15, 8, 13],
         ),
         column_shares=[57, 43],
         name="Replay",
+    )
+
+
+def _tables(stage: Stage) -> rrb.Container:
+    """What can be asked."""
+    return rrb.Tabs(
+        _table(stage, scheme.TASKS, "Tasks"),
+        _table(stage, scheme.TRIPS, "Trips"),
+        _table(stage, scheme.TRANSCRIPT, "Transcript"),
+        name="Tables",
+        active_tab=0,
     )
 
 
@@ -132,6 +185,7 @@ def _world(stage: Stage) -> rrb.View:
         background=DARK,
         visual_bounds=_bounds(stage),
         overrides={
+            **{stage(path): UNPICKABLE for path in (scheme.FLOOR, scheme.LINKS)},
             stage(scheme.ROBOTS): _with_rim(stage.mark, 20.0),
             stage(scheme.MOVERS): [*_with_rim(stage.mark, 24.0), nose, names],
         },
@@ -156,21 +210,17 @@ def _with_rim(radius: float, order: float) -> list[rrb.Visualizer]:
     ]
 
 
-def _phases(stage: Stage) -> rrb.Container:
-    """The bar of phases around the cursor, so many messages wide or so many seconds.
-
-    In seconds, messages crowd into a line; in messages, a moment of simulated time is one phase,
-    the right one. So that comes first, whatever timeline is scrubbed by.
-    """
+def _lanes(stage: Stage) -> rrb.Container:
+    """What is going on around the cursor, about each open event and with those who have a part."""
     around = rrb.TimeRangeBoundary.cursor_relative
+    by_time = rr.TimeRange(start=around(seconds=-8.0), end=around(seconds=4.0))
     by_msg = rr.TimeRange(start=around(seq=-40), end=around(seq=20))
-    by_time = rr.TimeRange(start=around(seconds=-20.0), end=around(seconds=10.0))
     return rrb.Tabs(
         *(
             rrb.StateTimelineView(
-                origin=stage(scheme.PHASE), name=name, time_view=rrb.TimeAxis(view_range=span)
+                origin=stage(scheme.LANES), name=name, time_view=rrb.TimeAxis(view_range=span)
             )
-            for name, span in (("Phases", by_msg), ("Phases, by sim_time", by_time))
+            for name, span in (("What is going on", by_time), ("by message or round", by_msg))
         ),
         active_tab=0,
     )
@@ -193,12 +243,26 @@ def _log(stage: Stage, *, decisions: bool) -> rrb.View:
     )
 
 
-def _tree(stage: Stage) -> rrb.View:
-    return rrb.GraphView(
-        origin=stage(scheme.TREE),
-        name="Auction",
+def _chart(stage: Stage) -> rrb.View:
+    return rrb.Spatial2DView(
+        origin=stage(scheme.CHART),
+        name="Sequence chart",
+        background=DARK,
         visual_bounds=rrb.VisualBounds2D(
-            x_range=[-0.04 * WIDTH, 1.04 * WIDTH], y_range=[-0.12 * HEIGHT, 1.12 * HEIGHT]
+            x_range=[-0.02 * WIDTH, 1.02 * WIDTH], y_range=[-0.22 * HEIGHT, 1.05 * HEIGHT]
+        ),
+    )
+
+
+def _table(stage: Stage, path: str, name: str) -> rrb.View:
+    """A table that can be sorted, filtered and scrolled through."""
+    table = path.rpartition("/")[2]
+    columns: list[Any] = [f"{stage(path)}:{table}:{column}" for column in SCHEMAS[path]]
+    return rrb.DataframeView(
+        origin=stage(path),
+        name=name,
+        query=rrb.archetypes.DataframeQuery(
+            timeline=scheme.STORY, select=columns, auto_scroll=True
         ),
     )
 
@@ -230,12 +294,22 @@ def _messages(stage: Stage) -> rrb.View:
 
 
 def _curves(
-    path: str, name: str, legend: str = "LeftTop", span: tuple[float, float] | None = None
+    path: str,
+    name: str,
+    legend: str = "LeftTop",
+    span: tuple[float, float] | None = None,
+    contents: Sequence[str] = ("$origin/**",),
 ) -> rrb.View:
+    """Curves over the whole lifetime, whatever the cursor is at."""
+    ever = rr.TimeRange(
+        start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.infinite()
+    )
     return rrb.TimeSeriesView(
         origin=path,
+        contents=contents,
         name=name,
         background=rrb.archetypes.PlotBackground(color=DARK, show_grid=True),
         plot_legend=rrb.PlotLegend(rrb.Corner2D.auto(legend)),
+        axis_x=rrb.TimeAxis(view_range=ever),
         axis_y=None if span is None else rrb.ScalarAxis(range=span),
     )

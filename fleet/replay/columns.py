@@ -14,15 +14,20 @@ import pyarrow as pa
 import rerun as rr
 from numpy.typing import ArrayLike, NDArray
 
-from fleet.replay.scheme import MSG, ROUND, SIM_TIME
+from fleet.replay.scheme import MSG, ROUND, SIM_TIME, STORY
 
 
 class Moment(NamedTuple):
-    """When a row is true, on all three timelines."""
+    """When a row is true, on all timelines."""
 
     time: float  # simulated [s]
     round: int
     msg: int
+    story: float  # [s]
+
+    def later(self, time: float) -> Moment:
+        """At another simulated ``time`` [s], while nobody talks."""
+        return self._replace(time=time, story=self.story + time - self.time)
 
 
 class Index(NamedTuple):
@@ -31,12 +36,25 @@ class Index(NamedTuple):
     times: NDArray[np.float64]  # [s]
     rounds: NDArray[np.int64]
     msgs: NDArray[np.int64]
+    stories: NDArray[np.float64]  # [s]
 
     @classmethod
     def of(cls, moments: Sequence[Moment]) -> Index:
         """The moments of rows that were kept one by one."""
-        times, rounds, msgs = zip(*moments, strict=True) if moments else ((), (), ())
-        return cls(np.array(times, float), np.array(rounds, np.int64), np.array(msgs, np.int64))
+        times, rounds, msgs, stories = zip(*moments, strict=True) if moments else ((), (), (), ())
+        return cls(
+            np.array(times, float),
+            np.array(rounds, np.int64),
+            np.array(msgs, np.int64),
+            np.array(stories, float),
+        )
+
+    @classmethod
+    def drive(cls, times: NDArray[np.float64], at: Moment) -> Index:
+        """Simulated ``times`` (k,) [s] up to ``at``, while nobody talks."""
+        k = len(times)
+        whole = np.full(k, at.round, np.int64), np.full(k, at.msg, np.int64)
+        return cls(times, *whole, times + (at.story - at.time))
 
     @classmethod
     def joined(cls, parts: Sequence[Index]) -> Index:
@@ -45,17 +63,22 @@ class Index(NamedTuple):
             np.concatenate([part.times for part in parts]),
             np.concatenate([part.rounds for part in parts]),
             np.concatenate([part.msgs for part in parts]),
+            np.concatenate([part.stories for part in parts]),
         )
 
     def take(self, rows: NDArray[np.intp]) -> Index:
         """Some of them."""
-        return Index(self.times[rows], self.rounds[rows], self.msgs[rows])
+        return Index(self.times[rows], self.rounds[rows], self.msgs[rows], self.stories[rows])
 
     def columns(self) -> list[rr.TimeColumn]:
         """As Rerun has them; times as whole nanoseconds, for fractions would be cut off."""
-        nanoseconds = np.rint(1e9 * self.times).astype("timedelta64[ns]")
+        times, stories = (
+            np.rint(1e9 * seconds).astype("timedelta64[ns]")
+            for seconds in (self.times, self.stories)
+        )
         return [
-            rr.TimeColumn(SIM_TIME, duration=nanoseconds),
+            rr.TimeColumn(STORY, duration=stories),
+            rr.TimeColumn(SIM_TIME, duration=times),
             rr.TimeColumn(ROUND, sequence=self.rounds),
             rr.TimeColumn(MSG, sequence=self.msgs),
         ]
@@ -120,8 +143,13 @@ def doubles(values: ArrayLike) -> pa.Array:
     return pa.array(np.asarray(values, np.float64))
 
 
-def texts(values: Sequence[str]) -> pa.Array:
-    """Texts (k,)."""
+def whole(values: ArrayLike) -> pa.Array:
+    """Numbers (k,), none of them more than two thousand million."""
+    return pa.array(np.asarray(values, np.int32))
+
+
+def texts(values: Sequence[str | None]) -> pa.Array:
+    """Texts (k,); None: nothing."""
     return pa.array(values, pa.string())
 
 

@@ -51,8 +51,7 @@ def _stage(recording: Recording, root: str) -> Stage:
     scene = recording.properties["scene"]
     radii = recording.static(ROBOTS, "Points2D:radii")
     assert radii is not None
-    name = f"{scene['protocol']} · {scene['world']} · {scene['motion']} · seed {scene['seed']}"
     return Stage(
         scene["width"], scene["height"], float(radii[0]), scene["capacity"],
-        name if root else "World", root,
+        scene["title"], root,
     )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import ceil
 from typing import Literal, NamedTuple, TypeAlias, cast
 
@@ -30,33 +31,40 @@ class Theme(NamedTuple):
     rim: str
     text: float  # how much of a colour's light is left when it is a text
     links: tuple[float, float]  # opacity of all links in range, and of those of the routing graph
+    kinds: Mapping[str, int]  # colours of arrows
+    winner: int
 
 
 THEMES = {
-    "light": Theme("#ffffff", "#1b222c", "#eceff3", "#ffffff", 0.62, (0.28, 0.8)),
-    "dark": Theme("#10151d", "#dfe5ee", "#1a2230", "#0b0e14", 1.0, (0.4, 0.8)),
-}
+    "light": Theme(
+        "#ffffff", "#1b222c", "#eceff3", "#ffffff", 0.62, (0.28, 0.8),
+        scheme.KINDS_ON_WHITE, scheme.WINNER_ON_WHITE,
+    ),
+    "dark": Theme(
+        "#10151d", "#dfe5ee", "#1a2230", "#0b0e14", 1.0, (0.4, 0.8),
+        scheme.KIND_COLOURS, scheme.WINNER_COLOUR,
+    ),
+}  # fmt: skip
 
 
 BESIDE, BEYOND = 0.44, 0.82  # the floor, for the axis and for the scale of energies [in]
-BELOW, ABOVE = 0.5, 0.3  # the floor, for the axis and for the caption [in]
+BELOW, ABOVE = 0.5, 0.5  # the floor, for the axis and for the caption [in]
 ROW, COLUMN = 0.14, 1.25  # of the legend [in]
-ENTRIES = 10  # that it has at most, nearly always
-LINES: tuple[tuple[str, str, int, Literal["-", "--"], float], ...] = (  # of the legend
-    (scheme.DRIVEN, "way driven", scheme.WINNER_COLOUR, "-", 2.2),
-    (scheme.PLANNED, "way planned", scheme.PLANNED_COLOUR, "-", 0.8),
-    (scheme.STRAIGHT, "straight, Eq. (1)", scheme.WINNER_COLOUR, "--", 1.4),
+USUAL = 5.2  # width [in] that sizes of letters and lines are for
+LINES: tuple[tuple[str, str, int | None, Literal["-", "--"], float], ...] = (  # of the legend
+    (scheme.DRIVEN, "way driven", None, "-", 2.2),
+    (scheme.PLANNED, "way planned", None, "-", 0.8),
+    (scheme.STRAIGHT, "straight, Eq. (1)", None, "--", 1.4),
     (scheme.RELOCATION, "relocation", scheme.RELOCATION_COLOUR, "--", 1.4),
     (scheme.ROUTING, "link", scheme.ROUTING_COLOUR, "-", 1.4),
-    (scheme.DEAD, "off the air", scheme.CROSS_COLOUR, "-", 1.4),
-)
+)  # None: the winner's colour
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, bottom, width and height, in shares of a figure."""
 
 
-def columns(width: float) -> int:
+def columns(width: float, scale: float = 1.0) -> int:
     """How many columns a legend has room for in a figure of that ``width`` [in]."""
-    return max(1, min(4, int((width - 0.2) / COLUMN)))
+    return max(1, min(4, int((width - 0.2) / (COLUMN * scale))))
 
 
 class FloorFigure:
@@ -72,6 +80,7 @@ class FloorFigure:
         self._recording = recording
         self._theme = THEMES[theme]
         scene = recording.properties["scene"]
+        self._title = str(scene["title"])
         self._size = float(scene["width"]), float(scene["height"])
         self._capacity = float(scene["capacity"])
         self._search = float(scene["search_radius"])
@@ -88,6 +97,7 @@ class FloorFigure:
         self._recording.check_moment(timeline, moment)
         self._when = timeline, moment
         self._axes = axes
+        self._bold = self.scale(axes.figure.bbox.width / axes.figure.dpi)
         self._floor()
         faint, clear = self._theme.links
         for path, width, colour, alpha in (
@@ -96,23 +106,25 @@ class FloorFigure:
         ):
             for part in scheme.LINK_PARTS:
                 self._lines(f"{path}/{part}", width, colour, alpha=alpha)
+        self._regions()
         self._event()
-        self._lines(scheme.STRAIGHT, 0.9, scheme.WINNER_COLOUR, outlined=True)
-        self._lines(scheme.RELOCATION, 0.9, scheme.RELOCATION_COLOUR, outlined=True)
-        self._lines(scheme.PLANNED, 0.6, scheme.PLANNED_COLOUR, outlined=True)
-        self._lines(scheme.DRIVEN, 1.8, scheme.WINNER_COLOUR, outlined=True)
-        kinds = self._arrows()
+        winner = self._theme.winner
+        self._lines(scheme.STRAIGHT, 0.9, winner, order=2.0)
+        self._lines(scheme.RELOCATION, 0.9, scheme.RELOCATION_COLOUR, order=2.0)
+        self._lines(scheme.PLANNED, 0.6, winner, order=2.1)
+        self._lines(scheme.DRIVEN, 1.8, winner, order=2.2)
+        self._arrows()
         self._discs(scheme.RINGS, 1.75, 4.0, rim=1.35)
         self._discs(scheme.ROBOTS, 1.0, 5.0)
+        self._marks()
         self._discs(scheme.MOVERS, 1.0, 6.0)
         self._noses()
-        self._lines(scheme.DEAD, 1.2, scheme.CROSS_COLOUR, order=7.0)
         self._labels()
-        self._legend(kinds)
+        self._legend()
 
     def height(self, width: float) -> float:
         """How high a figure of that width is, all in inches."""
-        return self._below(width) + self._floor_height(width) + ABOVE
+        return self._below(width) + self._floor_height(width) + ABOVE * self.scale(width)
 
     def boxes(self, width: float) -> tuple[Box, Box]:
         """Where in a figure of that width the floor is, and the scale of energies."""
@@ -128,7 +140,8 @@ class FloorFigure:
 
     def _below(self, width: float) -> float:
         """Room for the axis and the legend [in]."""
-        return BELOW + ROW * ceil(ENTRIES / columns(width))
+        scale = self.scale(width)
+        return BELOW * scale + ROW * scale * ceil(len(self._entries()) / columns(width, scale))
 
     def _floor_height(self, width: float) -> float:
         across, up = (side + 0.02 * max(self._size) for side in self._size)
@@ -141,17 +154,24 @@ class FloorFigure:
         assert figure is not None
         bar = figure.colorbar(scale, cax=axes, label="battery [J]")
         ink = self._theme.ink
-        bar.ax.tick_params(colors=ink, labelsize=7)
-        bar.ax.yaxis.label.set(color=ink, size=8)
+        bar.ax.tick_params(colors=ink, labelsize=7 * self._bold)
+        bar.ax.yaxis.label.set(color=ink, size=8 * self._bold)
         cast(Line2D, bar.outline).set_visible(False)
 
     def caption(self) -> str:
-        """The moment in words: event, message and time."""
+        """The run, what has come of the event in sight, and the moment."""
         timeline, moment = self._when
-        time, event, message = self._recording.moment_at(timeline, moment)
+        time, _, message = self._recording.moment_at(timeline, moment)
         if timeline == scheme.SIM_TIME:
             time = moment
-        return f"event {event}  ·  message {message}  ·  {time:.2f} s"
+        card = self._get(scheme.CARD, "TextDocument:text")
+        outcome = str(card[0]).partition("\n")[0].removeprefix("## ") if len(card) else ""
+        return f"{self._title}\n{outcome}  ·  message {message}  ·  {time:.2f} s"
+
+    @staticmethod
+    def scale(width: float) -> float:
+        """How much larger than usual letters and lines are in a figure of that ``width`` [in]."""
+        return min(max(width / USUAL, 0.85), 1.7)
 
     def _get(self, entity: str, component: str) -> Values:
         found = self._recording.at(entity, component, *self._when)
@@ -170,9 +190,9 @@ class FloorFigure:
         )  # fmt: skip
         axes.grid(visible=True, color=theme.grid, linewidth=0.6)
         axes.set_axisbelow(True)
-        axes.tick_params(colors=theme.ink, labelsize=7, length=0)
+        axes.tick_params(colors=theme.ink, labelsize=7 * self._bold, length=0)
         for label in (axes.xaxis.label, axes.yaxis.label):
-            label.set(color=theme.ink, size=8)
+            label.set(color=theme.ink, size=8 * self._bold)
         for spine in axes.spines.values():
             spine.set(color=theme.ink, linewidth=0.8, alpha=0.6)
         hole = self._recording.static(scheme.HOLE, "LineStrips2D:strips")
@@ -186,20 +206,40 @@ class FloorFigure:
             axes.add_patch(Polygon(np.asarray(outline), facecolor=theme.ink, alpha=0.35))
 
     def _lines(
-        self, path: str, width: float, colour: int, *, order: float = 2.0, alpha: float = 1.0,
-        outlined: bool = False,
-    ) -> None:  # fmt: skip
+        self, path: str, width: float, colour: int, *, order: float = 1.0, alpha: float = 1.0
+    ) -> None:
         strips = self._get(path, "LineStrips2D:strips")
-        if not len(strips):
-            return
-        lines = [np.asarray(strip) for strip in strips]
-        if outlined and self._theme.ground == THEMES["light"].ground:
+        if len(strips):
+            lines = [np.asarray(strip) for strip in strips]
             self._axes.add_collection(
-                LineCollection(lines, colors=self._theme.ink, linewidths=width + 0.8, zorder=order)
+                LineCollection(
+                    lines, colors=rgb(colour), linewidths=width * self._bold, zorder=order,
+                    alpha=alpha,
+                )
+            )  # fmt: skip
+
+    def _marks(self) -> None:
+        """What has befallen robots; white strokes are in ink on white."""
+        strips = self._get(scheme.MARKS, "LineStrips2D:strips")
+        paint = np.asarray(self._get(scheme.MARKS, "LineStrips2D:colors"), np.uint32).tolist()
+        broken = scheme.MARK_COLOURS["broken"]
+        for strip, colour in zip(strips, paint, strict=True):
+            ink = self._theme.ink if colour == broken else rgb(colour)
+            self._axes.plot(*np.asarray(strip).T, color=ink, lw=1.2 * self._bold, zorder=5.5)
+
+    def _regions(self) -> None:
+        """Where the radio is silent."""
+        centres = self._points(scheme.SILENT, "Ellipses2D:centers").tolist()
+        radii = self._points(scheme.SILENT, "Ellipses2D:half_sizes")[:, 0].tolist()
+        for centre, radius in zip(centres, radii, strict=True):
+            self._axes.add_patch(
+                Circle(centre, radius, facecolor=self._theme.ink, alpha=0.12, zorder=0.5)
             )
-        self._axes.add_collection(
-            LineCollection(lines, colors=rgb(colour), linewidths=width, zorder=order, alpha=alpha)
-        )
+        for site in self._points(scheme.OPEN_EVENTS, "Points2D:positions"):
+            self._axes.add_patch(
+                Circle(site, 0.6 * self._mark, color=rgb(scheme.EVENT_COLOUR), alpha=0.6)
+            )
+        self._lines(scheme.TRUE_SITE, 0.8, scheme.TRUE_COLOUR, order=6.4)
 
     def _event(self) -> None:
         sites = self._points(scheme.EVENT, "Points2D:positions")
@@ -214,30 +254,31 @@ class FloorFigure:
             )
             self._axes.add_patch(Circle(site, 0.45 * self._mark, color=colour, zorder=6.5))
 
-    def _arrows(self) -> list[str]:
-        """The conversation so far; returns the kinds that were drawn."""
-        drawn = []
-        for path in sorted(self._recording.entities):
-            if path.startswith(f"{scheme.MESSAGES}/"):
-                colour = rgb(scheme.arrow_colour(path))
-                if self._quiver(path, colour, 0.0042):
-                    drawn.append(path.rpartition("/")[2])
-        self._quiver(scheme.PACKET, self._theme.ink, 0.0062)
-        return drawn
+    def _kinds(self) -> list[str]:
+        """Kinds of transmissions in the recording, in the order in which they are drawn."""
+        prefix = f"{scheme.MESSAGES}/"
+        found = [p.removeprefix(prefix) for p in self._recording.temporal if p.startswith(prefix)]
+        order = [*scheme.KIND_COLOURS, *sorted(set(found) - {*scheme.KIND_COLOURS, "lost"}), "lost"]
+        return [kind for kind in order if kind in found]
 
-    def _quiver(self, path: str, colour: str, width: float) -> bool:
+    def _kind_colour(self, kind: str) -> str:
+        return rgb(self._theme.kinds.get(kind, scheme.arrow_colour(scheme.messages(kind))))
+
+    def _arrows(self) -> None:
+        """The conversation so far, in the viewer's order."""
+        for order, kind in enumerate(self._kinds()):
+            path = scheme.messages(kind)
+            self._quiver(path, self._kind_colour(kind), 0.0046, 3.0 + 0.05 * order)
+        self._quiver(scheme.PACKET, self._theme.ink, 0.0062, 3.9)
+
+    def _quiver(self, path: str, colour: str, width: float, order: float) -> None:
         origins = self._points(path, "Arrows2D:origins")
-        if not len(origins):
-            return False
-        vectors = self._points(path, "Arrows2D:vectors")
-        light = self._theme.ground == THEMES["light"].ground
-        self._axes.quiver(
-            *origins.T, *vectors.T, angles="xy", scale_units="xy", scale=1.0, width=width,
-            color=colour, edgecolor=self._theme.ink if light else "none",
-            linewidth=0.4 if light else 0.0, headwidth=3.2, headlength=3.6, headaxislength=3.2,
-            zorder=3.0,
-        )  # fmt: skip
-        return True
+        if len(origins):
+            vectors = self._points(path, "Arrows2D:vectors")
+            self._axes.quiver(
+                *origins.T, *vectors.T, angles="xy", scale_units="xy", scale=1.0, width=width,
+                color=colour, headwidth=3.4, headlength=3.8, headaxislength=3.4, zorder=order,
+            )  # fmt: skip
 
     def _discs(self, path: str, radius: float, order: float, rim: float = 0.0) -> None:
         places = self._points(path, "Points2D:positions")
@@ -269,6 +310,7 @@ class FloorFigure:
 
     def _labels(self) -> None:
         hang = 0.02 * max(self._size)  # of the viewer's labels; here they hang on their middle
+        self._lines(scheme.LEADERS, 0.6, scheme.LEADER_COLOUR, order=7.9, alpha=0.8)
         words = self._get(scheme.NAMES, "Points2D:labels")
         places = self._points(scheme.NAMES, "Points2D:positions") - [0.0, hang]
         paint = np.asarray(self._get(scheme.NAMES, "Points2D:colors"), np.uint32).tolist()
@@ -281,34 +323,49 @@ class FloorFigure:
 
     def _text(self, x: float, y: float, text: str, colour: str) -> None:
         self._axes.text(
-            x, y, text, color=colour, size=7, ha="center", va="center", zorder=8.0, clip_on=True,
+            x, y, text, color=colour, size=7 * self._bold, ha="center", va="center", zorder=8.0,
+            clip_on=True,
             bbox={"boxstyle": "round,pad=.2", "fc": self._theme.ground, "ec": "none", "alpha": 0.8},
         )  # fmt: skip
 
-    def _legend(self, drawn: list[str]) -> None:
-        kinds = [kind for kind in (*scheme.KIND_LABELS, "lost") if kind in drawn]
-        handles = [
-            Line2D([], [], color=rgb(scheme.arrow_colour(scheme.messages(kind))), lw=2.0)
-            for kind in kinds
+    def _entries(self) -> list[tuple[str, Line2D]]:
+        """The legend: the same at every moment, of all that is in the recording."""
+        entries = [
+            (
+                scheme.KIND_LABELS.get(kind, kind),
+                Line2D([], [], color=self._kind_colour(kind), lw=2),
+            )
+            for kind in self._kinds()
         ]
-        words = [scheme.KIND_LABELS.get(kind, kind) for kind in kinds]
+        present = self._recording.temporal
         for path, word, colour, style, width in LINES:
-            if any(
-                len(self._get(part, "LineStrips2D:strips")) for part in (path, f"{path}/lasting")
-            ):
-                handles.append(Line2D([], [], color=rgb(colour), linestyle=style, lw=width))
-                words.append(word)
-        if len(self._points(scheme.EVENT, "Points2D:positions")):
-            ring = Line2D([], [], marker="o", markersize=6, markerfacecolor="none", linewidth=0.0)
-            ring.set_color(rgb(scheme.EVENT_COLOUR))
-            handles.append(ring)
-            words.append("event, search radius" if self._search > 0.0 else "event")
+            if path in present or f"{path}/lasting" in present:
+                paint = rgb(self._theme.winner if colour is None else colour)
+                entries.append((word, Line2D([], [], color=paint, linestyle=style, lw=width)))
+        befallen = {
+            colour
+            for row in self._recording.rows(scheme.MARKS, "LineStrips2D:colors").values
+            for colour in np.asarray(row, np.uint32).tolist()
+        }
+        for why, colour in scheme.MARK_COLOURS.items():
+            if colour in befallen:
+                paint = self._theme.ink if why == "broken" else rgb(colour)
+                mark = Line2D([], [], marker="_" if why == "motor" else "x", color=paint, lw=0.0)
+                entries.append((scheme.MARK_LABELS[why], mark))
+        ring = Line2D([], [], marker="o", markersize=6, markerfacecolor="none", linewidth=0.0)
+        ring.set_color(rgb(scheme.EVENT_COLOUR))
+        entries.append(("event, search radius" if self._search > 0.0 else "event", ring))
+        return entries
+
+    def _legend(self) -> None:
+        words, handles = zip(*self._entries(), strict=True)
         width = self._axes.figure.bbox.width / self._axes.figure.dpi
+        drop = -0.34 * self._bold / self._axes.bbox.height * self._axes.figure.dpi
         self._axes.legend(
-            handles, words, ncols=min(columns(width), ceil(len(words) / 2)), loc="upper center",
-            bbox_to_anchor=(0.5, -0.34 / self._axes.bbox.height * self._axes.figure.dpi),
-            bbox_transform=self._axes.transAxes, frameon=False, fontsize=6.5,
-            labelcolor=self._theme.ink, handlelength=1.6, columnspacing=1.4,
+            handles, words, ncols=columns(width, self._bold), loc="upper center",
+            bbox_to_anchor=(0.5, drop), bbox_transform=self._axes.transAxes, frameon=False,
+            fontsize=6.5 * self._bold, labelcolor=self._theme.ink, handlelength=1.6,
+            columnspacing=1.4,
         )  # fmt: skip
 
 

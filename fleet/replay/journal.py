@@ -41,6 +41,9 @@ class TripEnd(NamedTuple):
     ended: float  # [s]
     path: float  # [m]
     energy: float  # [J]
+    planned: float  # [m] when it set off; 0: motion has no notion of it
+    offset: float  # [m] from the site to where it was bound: the site is covered
+    waited: float  # [s] before it could set off, and for others on the way
 
 
 RELOCATED = "relocated"  # the outcome of a trip to a place that is no event
@@ -63,12 +66,24 @@ class Scene(NamedTuple):
     radius: float  # of a robot [m]
     per_metre: float  # Eq. (1) at cruise speed [J/m]
     radio_range: float  # [m]
+    disc: bool  # whether robots hear one another within that range, whatever is between
     search_radius: float  # [m]
+    sensors: list[Point]  # [m]
+    sensing: float  # how far they sense [m]
     graph: str
     protocol: str
     motion: str
     world: str
     seed: int
+    metric: str  # what bids are worth, and in what unit; "": not known
+    unit: str
+    belief: str  # what robots believe that a trip costs
+    routed: bool  # whether the protocol searches for the robot that decides
+
+    @property
+    def title(self) -> str:
+        """Which run it is."""
+        return f"{self.protocol} · {self.world} · {self.motion} · seed {self.seed}"
 
 
 def send(pipe: IO[bytes], tag: str, *content: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -13,7 +14,18 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from rerun.chunk import Chunk, RrdReader
 
-from fleet.replay.scheme import APPLICATION, COMPARISON, LOG, ROUND, SIM_TIME, TIMELINES
+from fleet.replay.scheme import (
+    APPLICATION,
+    COMPARISON,
+    IN_SECONDS,
+    LOG,
+    MSG,
+    ROUND,
+    SIM_TIME,
+    STORY,
+    TIMELINES,
+)
+from fleet.replay.table_schemas import SCHEMAS, SORTED_BY
 
 NANO = 1e9
 
@@ -83,6 +95,11 @@ class Recording:
             if entity.startswith(prefix)
         }
 
+    @cached_property
+    def temporal(self) -> set[str]:
+        """The paths of what came and went, or moved."""
+        return {e for e in self.entities if any(map(_is_temporal, self.batches(e)))}
+
     def batches(self, entity: str) -> list[pa.RecordBatch]:
         """The chunks of an entity as Arrow has them."""
         if entity not in self._batches:
@@ -90,6 +107,33 @@ class Recording:
                 chunk.to_record_batch() for chunk in self._by_entity.get(entity, ())
             ]
         return self._batches[entity]
+
+    def table(self, path: str) -> pa.Table:
+        """A table of the recording, such as :data:`scheme.TRANSCRIPT`: its columns by name.
+
+        Raises:
+            ValueError: there is no such table.
+        """
+        if path not in SCHEMAS:
+            raise ValueError(f"table {path!r}; expected one of {', '.join(SCHEMAS)}")
+        prefix = f"{path.rpartition('/')[2]}:"
+        parts = [self._part(batch, prefix, SCHEMAS[path]) for batch in self.batches(path)]
+        schema = pa.schema([pa.field(name, kind) for name, kind in SCHEMAS[path].items()])
+        return pa.Table.from_batches(parts, schema).sort_by(SORTED_BY[path])
+
+    @staticmethod
+    def _part(
+        batch: pa.RecordBatch, prefix: str, schema: Mapping[str, pa.DataType]
+    ) -> pa.RecordBatch:
+        """The columns of a chunk; Rerun keeps a list of values in each cell."""
+        cells = [
+            batch.column(prefix + name)
+            if pa.types.is_list(kind)
+            else batch.column(prefix + name).flatten()
+            for name, kind in schema.items()
+        ]
+        arrays = [cell.cast(kind) for cell, kind in zip(cells, schema.values(), strict=True)]
+        return pa.record_batch(arrays, names=[*schema])
 
     def span(self, timeline: str) -> tuple[float, float]:
         """The first and the last moment of a timeline; simulated time in s."""
@@ -100,7 +144,7 @@ class Recording:
             if timeline in batch.schema.names and len(index := _times(batch, timeline))
         ]
         first, last = min(low for low, _ in ends), max(high for _, high in ends)
-        scale = NANO if timeline == SIM_TIME else 1
+        scale = NANO if timeline in IN_SECONDS else 1
         return float(first) / scale, float(last) / scale
 
     def static(self, entity: str, component: str) -> Values | None:
@@ -144,7 +188,7 @@ class Recording:
         if key not in self._sorted:
             self._sorted[key] = self._ordered(*key)
         times, cells = self._sorted[key]
-        when = round(moment * NANO) if timeline == SIM_TIME else moment
+        when = round(moment * NANO) if timeline in IN_SECONDS else moment
         place = int(np.searchsorted(times, when, side="right"))
         return _values(cells[place - 1]) if place else self.static(entity, component)
 
@@ -154,9 +198,9 @@ class Recording:
         for batch in self.batches(LOG):
             if timeline in batch.schema.names:
                 times = np.concatenate([times, _times(batch, timeline)])
-                three = np.column_stack([_times(batch, name) for name in TIMELINES])
+                three = np.column_stack([_times(batch, name) for name in (SIM_TIME, ROUND, MSG)])
                 lines = np.concatenate([lines, three])
-        when = round(moment * NANO) if timeline == SIM_TIME else moment
+        when = round(moment * NANO) if timeline in IN_SECONDS else moment
         said = np.flatnonzero(times <= when)
         if not len(said):
             return 0.0, 0, 0
@@ -170,8 +214,10 @@ class Recording:
             raise ValueError(f"timeline {timeline!r}; expected one of {', '.join(TIMELINES)}")
         first, last = self.span(timeline)
         if not first <= moment <= last:
-            unit = " s" if timeline == SIM_TIME else ""
-            name = {SIM_TIME: "time", ROUND: "round"}.get(timeline, "message")
+            unit = " s" if timeline in IN_SECONDS else ""
+            name = {SIM_TIME: "time", STORY: "moment of the story", ROUND: "round"}.get(
+                timeline, "message"
+            )
             raise ValueError(
                 f"{self.path}: there is no {name} {moment:g}{unit};"
                 f" expected {first:g} to {last:g}{unit}"

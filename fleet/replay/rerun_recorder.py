@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from fleet.motion import Trip
 from fleet.observer import Excerpt, Observer
+from fleet.replay.adjacency import Adjacency, Changes
 from fleet.replay.journal import RELOCATED, Note, Scene, TripEnd
 from fleet.replay.writer_process import WriterProcess
 from protocols.messages import Award, Event, Move, RobotId
+from protocols.topology import NOWHERE
 
 if TYPE_CHECKING:
+    from fleet.faults import Blackout, Breakdown
     from fleet.fleet import Fleet
     from fleet.power import Battery
     from fleet.results import Summary
+    from fleet.robot import Appraisal
+    from fleet.tasks import Task
 
 MANY_POSES = 50_000  # that are held back at most
 MANY_LINES = 50_000  # of the transcript that are held back at most
 FLAT = len(TripEnd._fields)  # of a trip's fields go into the recording: the first
+INTERVAL = 0.25  # [s] between two looks at the links while robots drive
 LIVE_PAUSE = 0.1  # [s] between looks of a live viewer
 
 
@@ -48,6 +55,8 @@ class RerunRecorder(Observer):
     Raises:
         ValueError: there is nowhere to record to, or the file cannot be written.
     """
+
+    link_interval = INTERVAL
 
     def __init__(
         self,
@@ -93,11 +102,18 @@ class RerunRecorder(Observer):
             _plain(properties), strict,
         )  # fmt: skip
 
+    @override
     def run_started(self, fleet: Fleet) -> None:
         """Tell the writer what the world looks like."""
         self._all_drain = bool(fleet.spec.extra.idle or fleet.spec.extra.transmission)
         self._batteries = [robot.battery for robot in fleet.robots]
         hole, labels, spec = fleet.arena.hole, fleet.labels, fleet.spec
+        self._fleet = fleet
+        self._neighbours, self._hearers = Adjacency(len(fleet.robots)), Adjacency(len(fleet.robots))
+        self._placed = dict.fromkeys(range(len(fleet.robots)), NOWHERE)
+        self._heard_of = {robot.id for robot in fleet.robots if robot.on_air}
+        self._linked = self._refreshed = -INTERVAL
+        field = fleet.field
         scene = Scene(
             width=fleet.arena.width,
             height=fleet.arena.height,
@@ -109,19 +125,62 @@ class RerunRecorder(Observer):
             radius=spec.radius,
             per_metre=spec.power.per_metre(spec.cruise),
             radio_range=fleet.topology.radio_range,
+            disc=fleet.radio.disc,
             search_radius=labels.search_radius,
+            sensors=[] if field is None else field.positions.tolist(),
+            sensing=0.0 if field is None else field.spec.reach,
             graph=fleet.topology.graph,
             protocol=labels.protocol,
             motion=labels.motion,
             world=labels.world,
             seed=labels.seed,
+            metric=labels.metric,
+            unit=labels.unit,
+            belief=labels.belief,
+            routed=labels.routed,
         )
         self.writer.tell("scene", scene)
+        self._note_links(0.0, always=True)
 
-    def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
+    @override
+    def broke_down(self, fault: Breakdown) -> None:
         """Note it."""
-        self._note(("air_changed", time, list(on_air)))
+        self._note(("broke_down", fault.time, fault.robot, fault.what))
 
+    @override
+    def exhausted(self, robot: RobotId, time: float) -> None:
+        """Note it."""
+        self._note(("exhausted", time, robot))
+
+    @override
+    def blacked_out(self, blackout: Blackout) -> None:
+        """Note it."""
+        region = blackout.x, blackout.y, blackout.radius
+        self._note(("blacked_out", blackout.start, *region))
+
+    @override
+    def lifted(self, blackout: Blackout) -> None:
+        """Note it."""
+        region = blackout.x, blackout.y, blackout.radius
+        self._note(("lifted", blackout.end, *region))
+
+    @override
+    def air_changed(self, on_air: Sequence[RobotId], time: float) -> None:
+        """Note it, and whose links that has changed."""
+        self._note(("air_changed", time, list(on_air)))
+        toggled = self._heard_of ^ {*on_air}
+        self._heard_of = {*on_air}
+        self._note_links(time, toggled, always=True)
+
+    @override
+    def event_occurred(self, task: Task) -> None:
+        """Note it."""
+        event, place = task.event, task.event.position
+        self._note(
+            ("event_occurred", task.raised, event.id, place, task.site, task.deadline, task.service)
+        )
+
+    @override
     def event_raised(self, event: Event, source: RobotId, time: float) -> None:
         """Note it; a new event is also the moment to send what the last rounds left."""
         if event.id != self._latest:
@@ -129,11 +188,14 @@ class RerunRecorder(Observer):
             if self._rounds == self._flush_rounds or self._due():
                 self.flush()
             self._rounds += 1
-        self._note(("event_raised", time, event.id, event.position, source))
+        self._note_links(time, always=False)
+        self._note(("event_raised", time, event.id, source))
 
+    @override
     def transmitted(self, excerpt: Excerpt) -> None:
         """Note it."""
         first, time, event, transmissions, heard, attempts = excerpt
+        self._note_links(time, always=False)
         kinds, senders, receivers, bids = zip(*transmissions, strict=True)
         offers = [None if bid is None else tuple(bid) for bid in bids]
         self._note(
@@ -143,36 +205,53 @@ class RerunRecorder(Observer):
         if self._lines > MANY_LINES:
             self.flush()
 
+    @override
+    def appraised(self, event: Event, appraisals: Sequence[Appraisal], time: float) -> None:
+        """Note it."""
+        self._note(("appraised", time, event.id, [tuple(appraisal) for appraisal in appraisals]))
+
+    @override
     def awarded(self, event: Event, award: Award, time: float) -> None:
         """Note it."""
         bids, moves = [*zip(*award.bids, strict=True)], [*zip(*award.moves, strict=True)]
         self._note(("awarded", time, event.id, award.winner, award.auctioneer, bids, moves))
 
+    @override
     def broken_off(self, event: Event, reason: str, time: float) -> None:
         """Note it."""
         self._note(("broken_off", time, event.id, reason))
 
+    @override
     def event_closed(self, event: Event, outcome: str, time: float) -> None:
         """Note it."""
         self._note(("event_closed", time, event.id, outcome))
 
+    @override
     def departed(self, event: Event, robot: RobotId, time: float) -> None:
         """Note it."""
         self._note(("departed", time, event.id, robot, event.position, False))
 
+    @override
     def planned(self, robot: RobotId, way: NDArray[np.float64], time: float) -> None:
         """Note it."""
         self._note(("planned", time, robot, way.tobytes()))
 
+    @override
     def relocating(self, event: Event, move: Move, time: float) -> None:
         """Note it."""
         self._note(("departed", time, event.id, move.robot, move.position, True))
 
+    @override
     def relocated(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        end = trip.robot, RELOCATED, *trip[2:FLAT]
-        self._note(("trip_ended", event.id, end, self._charges(trip.robot)))
+        self._note_trip(event, trip._replace(outcome=RELOCATED))  # type: ignore[arg-type]
 
+    @override
+    def trip_ended(self, event: Event, trip: Trip) -> None:
+        """Note the trip, and what batteries hold now."""
+        self._note_trip(event, trip)
+
+    @override
     def moved(self, samples: NDArray[np.float64]) -> None:
         """Note the poses."""
         if len(samples):
@@ -181,10 +260,14 @@ class RerunRecorder(Observer):
             if self._poses > MANY_POSES:
                 self.flush()
 
-    def trip_ended(self, event: Event, trip: Trip) -> None:
-        """Note the trip, and what batteries hold now."""
-        self._note(("trip_ended", event.id, trip[:FLAT], self._charges(trip.robot)))
+    @override
+    def relinked(self, time: float) -> None:
+        """Note the links, if they were noted long enough ago."""
+        self._refreshed = time
+        if time == self._linked or time - self._linked >= INTERVAL:
+            self._note_links(time, always=False)
 
+    @override
     def run_ended(self, summary: Summary) -> None:
         """Keep the summary with the recording, but for what differs from run to run."""
         self.flush()
@@ -192,6 +275,7 @@ class RerunRecorder(Observer):
         del figures["wall_time"]
         self.writer.tell("summary", _plain(figures))
 
+    @override
     def closed(self) -> None:
         """Hand over the last notes and wait until the file is complete.
 
@@ -209,6 +293,42 @@ class RerunRecorder(Observer):
         self._notes.clear()
         self._lines = self._poses = self._rounds = 0
         self._flushed = time.monotonic()
+
+    def _note_trip(self, event: Event, trip: Trip) -> None:
+        """A trip has ended; the links are as they are with that robot at rest."""
+        self._note(("trip_ended", trip.ended, event.id, trip[:FLAT], self._charges(trip.robot)))
+        self._note_links(trip.ended, always=True)
+
+    def _note_links(self, time: float, toggled: Iterable[RobotId] = (), *, always: bool) -> None:
+        """Which links are new, and which are gone, since the last time: those of the run's live
+        graph, and, unless that goes without saying, who hears whom.
+
+        ``toggled`` are on the air now and were not, or the other way round; ``always``: note it
+        even if no link is another.
+        """
+        topology, radio = self._fleet.topology, self._fleet.radio
+        changed = topology.changed() | {*toggled}
+        changed.update(other for robot in toggled for other in topology.neighbours[robot])
+        self._linked = time
+        if not changed and not always:
+            return
+        moved = {r for r in changed if topology.positions[r] != self._placed[r]} | {*toggled}
+        places = [(robot, *topology.positions[robot]) for robot in moved]
+        self._placed |= {robot: topology.positions[robot] for robot in moved}
+        linked = self._neighbours.update(
+            (robot, self._on_air(robot, topology.neighbours[robot])) for robot in changed
+        )
+        heard: Changes = [], []
+        if not radio.disc:
+            heard = self._hearers.update(
+                (robot, self._on_air(robot, radio.hearers(robot))) for robot in moved
+            )
+        self._note(("relinked", time, places, *linked, *heard, self._refreshed == time))
+
+    def _on_air(self, robot: RobotId, others: Iterable[RobotId]) -> set[RobotId]:
+        """Those of a robot's links that are on the air."""
+        robots = self._fleet.robots
+        return {o for o in others if robots[o].on_air} if robots[robot].on_air else set()
 
     def _charges(self, robot: RobotId) -> list[float]:
         """What batteries hold: that of a robot that has driven, or all if all are drained."""

@@ -15,9 +15,9 @@ from fleet.replay.colormap import TABLE
 from fleet.replay.guide import guide
 from fleet.replay.journal import Scene
 from fleet.replay.layers.curves import describe_counts
-from fleet.replay.layers.event_log import describe_phases
 from fleet.replay.layers.label_placement import HANG
 from fleet.replay.layers.lifetime import describe_lifetime
+from fleet.replay.layers.sequence_chart import describe_chart
 from fleet.replay.sink import Sink
 from fleet.replay.state import FleetState
 from protocols.messages import Point
@@ -34,7 +34,7 @@ BLOCK = (52, 60, 74)
 
 def describe(sink: Sink, scene: Scene, key: str, properties: Mapping[str, Any]) -> None:
     """Say what this is a recording of."""
-    sink.name(f"{scene.protocol} · {scene.world} · {scene.motion} · seed {scene.seed} · {key}")
+    sink.name(f"{scene.title} · {key}")
     sink.properties("run", {"key": key, **properties})
     sink.properties(
         "scene",
@@ -47,10 +47,14 @@ def describe(sink: Sink, scene: Scene, key: str, properties: Mapping[str, Any]) 
             "radio_range": scene.radio_range,
             "search_radius": scene.search_radius,
             "graph": scene.graph,
+            "title": scene.title,
             "protocol": scene.protocol,
             "motion": scene.motion,
             "world": scene.world,
             "seed": scene.seed,
+            "metric": scene.metric,
+            "unit": scene.unit,
+            "belief": scene.belief,
         },
     )
 
@@ -68,7 +72,33 @@ def draw_scene(sink: Sink, state: FleetState) -> None:
     _style_lines(sink, scheme.RELOCATION, 1.6 * line, scheme.RELOCATION_COLOUR, 9.0)
     _style_lines(sink, scheme.PLANNED, 0.9 * line, scheme.PLANNED_COLOUR, 9.2)
     _style_lines(sink, scheme.DRIVEN, 3.2 * line, scheme.WINNER_COLOUR, 9.5)
-    _style_lines(sink, scheme.DEAD, 2.0 * line, scheme.CROSS_COLOUR, 23.0)
+    sink.static(scheme.MARKS, rr.LineStrips2D.from_fields(radii=2.0 * line, draw_order=23.0))
+    _style_lines(sink, scheme.LEADERS, 0.6 * line, scheme.LEADER_COLOUR, 39.0)
+    _style_lines(sink, scheme.TRUE_SITE, 1.0 * line, scheme.TRUE_COLOUR, 26.5)
+    sink.static(
+        scheme.TRUE_SITE,
+        rr.Points2D.from_fields(radii=0.7 * mark, colors=scheme.TRUE_COLOUR, draw_order=26.6),
+    )
+    sink.static(
+        scheme.OPEN_EVENTS,
+        rr.Points2D.from_fields(
+            radii=0.6 * mark, colors=scheme.OPEN_COLOUR, draw_order=26.0, show_labels=False
+        ),
+    )
+    sink.static(
+        scheme.SILENT,
+        rr.Ellipses2D.from_fields(
+            line_radii=1.5 * line, colors=scheme.SILENT_COLOUR, draw_order=4.0, show_labels=False
+        ),
+    )
+    if scene.sensors:
+        sink.static(
+            scheme.SENSORS,
+            rr.Points2D(
+                np.array(scene.sensors, np.float32), radii=0.25 * mark,
+                colors=scheme.SENSOR_COLOUR, draw_order=-40.0,
+            ),
+        )  # fmt: skip
     for order, kind in enumerate(scheme.KIND_COLOURS):
         width = 1.6 if kind in ("call", "bid") else 2.8
         _style_arrows(sink, scheme.messages(kind), width * line, scheme.kind_colour(kind), order)
@@ -116,14 +146,9 @@ def draw_scene(sink: Sink, state: FleetState) -> None:
     sink.static(
         scheme.NAMES, rr.Points2D.from_fields(radii=0.001, draw_order=40.0, show_labels=True)
     )
-    describe_phases(sink)
+    describe_chart(sink)
     describe_counts(sink)
     describe_lifetime(sink)
-    sink.static(
-        scheme.TREE,
-        rr.GraphNodes.from_fields(show_labels=True),
-        rr.GraphEdges.from_fields(graph_type=rr.components.GraphType.Directed),
-    )
     sink.static(scheme.GUIDE, rr.TextDocument(guide(state), media_type=rr.MediaType.MARKDOWN))
 
 

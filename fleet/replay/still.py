@@ -64,7 +64,12 @@ def draw(
     floor.draw(axes, timeline, moment)
     floor.colour_bar(bar)
     figure.set_facecolor(axes.get_facecolor())
-    axes.set_title(floor.caption(), color=axes.xaxis.label.get_color(), size=9, loc="left")
+    axes.set_title(
+        floor.caption(),
+        color=axes.xaxis.label.get_color(),
+        size=8.5 * floor.scale(size),
+        loc="left",
+    )
     return figure
 
 

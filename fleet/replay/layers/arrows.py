@@ -81,7 +81,10 @@ class Growing:
 
 
 class Arrows(Layer):
-    """Arrows by kind, the transmission at the cursor, and rings around those involved."""
+    """Arrows by kind, the transmission at the cursor, and rings around those involved.
+
+    All of it is about the event in focus, but for the transmission at the cursor.
+    """
 
     def __init__(self) -> None:
         self._arrows = {kind: Growing() for kind in (*(messages(kind) for kind in KINDS), LOST)}
@@ -89,53 +92,50 @@ class Arrows(Layer):
         self._packets: list[tuple[Moment, list[tuple[Segment, int]]]] = []
         self._rings: list[tuple[Moment, list[tuple[float, float, int]]]] = []
         self._parts: dict[RobotId, tuple[float, float, int]] = {}
-        self._talking: set[int] = set()  # events under discussion
 
     def run_started(self, state: FleetState) -> None:
         """Nobody has spoken."""
         self._state = state
 
-    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
-        """The floor is cleared, unless others are still talking."""
-        self._talking.discard(event)
-        if not self._talking:
-            for growing in self._arrows.values():
-                growing.restart(at)
-            self._parts.clear()
-        self._talking.add(event)
-        self._part(source, SOURCE_COLOUR)
+    def focused(self, at: Moment) -> None:
+        """The floor is cleared, and what has been said about the event drawn."""
+        for growing in self._arrows.values():
+            growing.restart(at)
+        self._parts.clear()
         self._packets.append((at, []))
+        conversation = self._state.in_focus
+        if conversation is not None:
+            self._part(conversation.source, SOURCE_COLOUR)
+            for line in conversation.lines:
+                path, new = self._aims(line)
+                self._arrows.setdefault(path, Growing()).extend(at, new)
+                self._involve(line)
+            self._complete(at)
         self._draw_rings(at)
 
     def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """One more arrow, or several if it was a broadcast."""
-        speaker = self._state.at(line.sender)
-        path, aims = messages(line.kind), [self._state.at(robot) for robot in line.heard]
-        if not line.heard:
-            path = LOST
-            aims = [speaker if line.receiver is None else self._state.at(line.receiver)]
-        new = [(*speaker, *aim) for aim in aims]
+        path, new = self._aims(line)
+        shown = [(arrow, PACKET_COLOUR) for arrow in new]
+        if line.event != self._state.focus:
+            self._packets.append((at, shown))
+            return
         growing = self._arrows.setdefault(path, Growing())
         if growing is not self._latest:
             self._latest.complete(at)
             self._latest = growing
         loose, colour = growing.loose, arrow_colour(path)
         growing.extend(at, new)
-        self._packets.append(
-            (
-                at,
-                [*((arrow, colour) for arrow in loose), *((arrow, PACKET_COLOUR) for arrow in new)],
-            )
-        )
-        self._involve(at, line)
+        self._packets.append((at, [*((arrow, colour) for arrow in loose), *shown]))
+        if self._involve(line):
+            self._draw_rings(at)
 
     def awarded(self, at: Moment, event: int, award: Award) -> None:
         """The winner stands out."""
-        self._talking.discard(event)
-        for growing in self._arrows.values():
-            growing.complete(at)
-        after = at._replace(msg=at.msg + 1)  # at the last message, it still stands out
-        self._packets.append((after, []))
+        self._hush(at)
+        if event != self._state.focus:
+            return
+        self._complete(at)
         self._part(award.auctioneer, AUCTIONEER_COLOUR)
         if award.winner is not None:
             self._part(award.winner, WINNER_COLOUR)
@@ -143,12 +143,9 @@ class Arrows(Layer):
 
     def broken_off(self, at: Moment, event: int, reason: str) -> None:
         """Nobody speaks of it any more."""
-        self._talking.discard(event)
-        self._packets.append((at._replace(msg=at.msg + 1), []))
-
-    def event_closed(self, at: Moment, event: int, outcome: str) -> None:
-        """Nor now."""
-        self._talking.discard(event)
+        if event == self._state.focus:
+            self._complete(at)
+        self._hush(at)
 
     def departed(self, at: Moment, robot: RobotId) -> None:
         """Who is under way is drawn as a mover."""
@@ -157,7 +154,7 @@ class Arrows(Layer):
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """The one who went, where it stands now."""
-        if trip.outcome != RELOCATED:
+        if trip.outcome != RELOCATED and event == self._state.focus:
             self._part(trip.robot, WINNER_COLOUR)
             self._draw_rings(at)
 
@@ -204,7 +201,23 @@ class Arrows(Layer):
             *more,
         )
 
-    def _involve(self, at: Moment, line: RecordedLine) -> None:
+    def _aims(self, line: RecordedLine) -> tuple[str, list[Segment]]:
+        """Where a transmission is drawn, and from where to where."""
+        speaker = self._state.at(line.sender)
+        if line.heard:
+            return messages(line.kind), [(*speaker, *self._state.at(r)) for r in line.heard]
+        aim = speaker if line.receiver is None else self._state.at(line.receiver)
+        return LOST, [(*speaker, *aim)]
+
+    def _complete(self, at: Moment) -> None:
+        for growing in self._arrows.values():
+            growing.complete(at)
+
+    def _hush(self, at: Moment) -> None:
+        """No transmission is at the cursor; at the last message, it still stands out."""
+        self._packets.append((at._replace(msg=at.msg + 1), []))
+
+    def _involve(self, line: RecordedLine) -> bool:
         """A ring for who took part: the latest part of the sender, or being called."""
         parts = self._parts
         was, size = parts.get(line.sender), len(parts)
@@ -212,10 +225,9 @@ class Arrows(Layer):
             self._part(line.sender, AUCTIONEER_COLOUR)
             for robot in line.heard:
                 parts.setdefault(robot, (*self._state.at(robot), CALLED_COLOUR))
-        elif line.kind != "assign":
+        elif line.kind != "assign" and not (line.kind == "bid" and line.bidder != line.sender):
             self._part(line.sender, kind_colour(line.kind))
-        if was != parts.get(line.sender) or size != len(parts):
-            self._draw_rings(at)
+        return was != parts.get(line.sender) or size != len(parts)
 
     def _part(self, robot: RobotId, colour: int) -> None:
         self._parts[robot] = (*self._state.at(robot), colour)

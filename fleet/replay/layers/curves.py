@@ -47,7 +47,7 @@ class Curves(Layer):
     def run_started(self, state: FleetState) -> None:
         """Full batteries, no messages."""
         self._state = state
-        self._count(Moment(0.0, 0, 0))
+        self._count(Moment(0.0, 0, 0, 0.0))
 
     def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """One more."""
@@ -60,8 +60,7 @@ class Curves(Layer):
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """Energy is counted when the driving is over."""
-        along = np.hypot(trip.site[0] - trip.origin[0], trip.site[1] - trip.origin[1])
-        foreseen = self._state.scene.per_metre * float(along)
+        foreseen = self._state.foreseen(trip.origin, trip.site)
         self._foreseen += foreseen
         self._drained += trip.energy
         self._trips.append((at, (foreseen, trip.energy)))

@@ -85,7 +85,7 @@ class Drives(Layer):
             self._driven[robot] = path
             for k, time in enumerate(mine[corners, 1].tolist(), len(drawn) + 1):
                 others = [p for r, p in self._driven.items() if r != robot]
-                self._driven_rows.append((at._replace(time=time), [*others, path[:k]]))
+                self._driven_rows.append((at.later(time), [*others, path[:k]]))
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """It stays in sight until the next event."""

@@ -1,125 +1,109 @@
-"""A card for every round: who was asked, who bid what, who went and why, and what it cost."""
+"""A card for the event in focus, its outcome first: who goes and why, and what it cost."""
 
 from __future__ import annotations
 
-from math import dist
+from collections.abc import Mapping
+from typing import Any
 
 import rerun as rr
 
 from fleet.replay.columns import Moment, column, texts
 from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
+from fleet.replay.layers import card_words as words
 from fleet.replay.scheme import CARD
 from fleet.replay.sink import Sink
 from fleet.replay.state import FleetState, Layer, OpenConversation
-from protocols.messages import Award, Bid, RobotId
-
-MANY_BIDS = 5  # shown
-MANY_ASKED = 12  # named
+from protocols.messages import Award, RobotId
 
 
 class EventCard(Layer):
-    """The card of the latest round; it grows as the round goes on."""
+    """The card of the event in focus; it grows as its conversation goes on."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[Moment, str]] = []
-        self._told: dict[int, list[str]] = {}  # by event: sentences about the search
-        self._bids: dict[int, str] = {}  # by event: the table
+        self._told: dict[int, str] = {}  # by event: how it became known
+        self._outcomes: dict[int, tuple[str, list[str]]] = {}  # by event: title, and what follows
 
     def run_started(self, state: FleetState) -> None:
         """A card to begin with."""
         self._state = state
-        scene = state.scene
-        self._rows.append(
-            (
-                Moment(0.0, 0, 0),
-                (
-                    f"## {state.n} robots, {scene.protocol}\n\n"
-                    f"World `{scene.world}`, motion `{scene.motion}`, seed {scene.seed}.\n\n"
-                    "Nothing has happened yet. *How to read* explains the picture."
-                ),
-            )
-        )
+        self._rows.append((Moment(0.0, 0, 0, 0.0), title_card(state)))
 
     def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
         """What has happened, and who knows."""
         state = self._state
-        x, y = state.sites[event]
-        away = dist(state.at(source), state.sites[event])
-        where = f"At **({x:.2f}, {y:.2f}) m**."
-        self._told[event] = [f"{where} Collector **r{source}**, {away:.2f} m away, is told of it."]
-        self._draw(at, event, f"Event {event + 1}")
+        talk = state.conversations[event]
+        self._told[event] = words.where(state.tasks.get(event), talk, state.at(source))
+        self._outcomes.pop(event, None)
+
+    def focused(self, at: Moment) -> None:
+        """Another event; the card of one that is over stays until there is."""
+        focus = self._state.in_focus
+        if focus is not None:
+            self._draw(at, focus)
 
     def transmitted(self, at: Moment, line: RecordedLine) -> None:
         """The search is over when the first call is made."""
-        conversation = self._state.conversations.get(line.event)
-        if line.kind == "call" and conversation is not None and conversation.calls == 1:
-            asked = f"**r{line.sender}** asks {_names(line.heard)} for bids."
-            self._told[line.event].append(self._search(conversation, line.sender))
-            self._draw(at, line.event, f"Event {line.event + 1}", asked)
+        focus = self._state.in_focus
+        if focus is not None and line.event == focus.event and line.kind == "call":
+            self._first_call(at, focus)
+
+    def _first_call(self, at: Moment, talk: OpenConversation) -> None:
+        if talk.calls == 1:
+            self._draw(at, talk)
 
     def awarded(self, at: Moment, event: int, award: Award) -> None:
         """Who bid what, and who goes."""
-        state, conversation, told = self._state, self._state.conversations[event], self._told[event]
-        if not conversation.calls:
-            told.append(self._search(conversation, award.auctioneer))
-        asked = tuple(conversation.parents)
-        if asked:
-            told.append(f"**r{award.auctioneer}** asked {_names(asked)}.")
-        for robot, (x, y) in award.moves:
-            why = "to carry the event on" if award.winner is None else "to keep the fleet connected"
-            told.append(f"**r{robot}** is sent to ({x:.2f}, {y:.2f}) m, {why}.")
-        winner, bids = award.winner, award.bids
-        if winner is None and award.moves:
-            self._draw(at, event, f"Event {event + 1} is carried on")
-            return
-        if winner is None:
-            told.append("**Nobody can go**: all who were asked believe that they lack the energy.")
-            self._draw(at, event, f"Event {event + 1}: nobody can go")
-            return
-        self._bids[event] = self._table(conversation, winner, bids)
-        need, held = state.foreseen(winner, conversation.site), float(state.energies[winner])
-        self._draw(
-            at,
-            event,
-            f"Event {event + 1}: r{winner} goes",
-            self._bids[event],
-            f"Eq. (1) foresees **{need:.1f} J** of the {held:.1f} J that r{winner} holds,"
-            f" for {dist(state.at(winner), conversation.site):.2f} m.",
-        )
+        state = self._state
+        talk, winner = state.conversations[event], award.winner
+        sent = [
+            f"**r{robot}** is sent to ({x:.2f}, {y:.2f}) m, "
+            f"to {'carry the event on' if winner is None else 'keep the fleet connected'}."
+            for robot, (x, y) in award.moves
+        ]
+        if winner is not None:
+            outcome = f"r{winner} goes"
+            more = [words.belief(state.scene, talk, winner, state.at(winner)), *sent]
+        elif award.moves:
+            outcome, more = "carried on", sent
+        else:
+            outcome, more = "nobody goes", [words.nobody(talk, award)]
+        table = [words.bids(state.scene, talk, award)] if award.bids else []
+        self._outcomes[event] = outcome, [" ".join(filter(None, more)), *table]
+        self._draw_if_focused(at, talk)
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """What it came to."""
-        if trip.outcome == RELOCATED:
+        talk = self._state.conversations.get(event)
+        if trip.outcome == RELOCATED or talk is None:
             return
-        straight = dist(trip.origin, trip.site)
-        foreseen = self._state.scene.per_metre * straight
-        over = f" ({100.0 * (trip.energy / foreseen - 1.0):+.1f} %)" if foreseen > 0.0 else ""
-        outcome = (
-            f"| r{trip.robot} | way | energy | time | left |\n|---|---|---|---|---|\n"
-            f"| Eq. (1), straight | {straight:.2f} m | {foreseen:.1f} J | | |\n"
-            f"| driven | {trip.path:.2f} m | **{trip.energy:.1f} J**{over}"
-            f" | {trip.ended - trip.departed:.1f} s"
-            f" | {self._state.energies[trip.robot]:.1f} J |"
-        )
         verb = "arrived" if trip.outcome == "arrived" else f"did not arrive: {trip.outcome}"
-        title = f"Event {event + 1}: r{trip.robot} {verb}"
-        self._draw(at, event, title, self._bids[event], outcome)
+        left = float(self._state.energies[trip.robot])
+        came = words.driven(self._state.scene, trip, talk.beliefs.get(trip.robot), left)
+        _, before = self._outcomes.get(event, ("", []))
+        self._outcomes[event] = f"r{trip.robot} {verb}", [came, *before]
+        self._draw_if_focused(at, talk)
 
     def broken_off(self, at: Moment, event: int, reason: str) -> None:
         """Nothing came of it."""
-        self._draw(
-            at,
-            event,
-            f"Event {event + 1}: nothing came of it",
-            f"The talk broke off: {reason}.",
-        )
+        self._outcomes[event] = "nothing came of it", [f"The talk broke off: {reason}."]
+        self._draw_if_focused(at, self._state.conversations[event])
 
     def event_closed(self, at: Moment, event: int, outcome: str) -> None:
         """What was not served; and nothing more will be said of it."""
-        if outcome != "served" and event in self._told:
-            self._draw(at, event, f"Event {event + 1}: {outcome}")
-        self._told.pop(event, None)
-        self._bids.pop(event, None)
+        talk = self._state.conversations.get(event)
+        if outcome != "served" and talk is not None:
+            self._outcomes[event] = outcome, self._outcomes.get(event, ("", []))[1]
+            self._draw_if_focused(at, talk)
+        if event != self._state.focus:
+            self._told.pop(event, None)
+        self._outcomes.pop(event, None)
+
+    def run_ended(self, at: Moment, summary: Mapping[str, Any] | None) -> None:
+        """How far the recording goes."""
+        if summary is None:
+            text = f"## The run broke off at {at.time:.2f} s\n\n{title_card(self._state)}"
+            self._rows.append((at, text))
 
     def send(self, sink: Sink) -> None:
         """The cards."""
@@ -134,37 +118,29 @@ class EventCard(Layer):
             )
         self._rows = []
 
-    def _draw(self, at: Moment, event: int, title: str, *more: str) -> None:
-        self._rows.append((at, "\n\n".join([f"## {title}", " ".join(self._told[event]), *more])))
+    def _draw_if_focused(self, at: Moment, talk: OpenConversation) -> None:
+        if talk.event == self._state.focus:
+            self._draw(at, talk)
 
-    def _search(self, conversation: OpenConversation, found: RobotId) -> str:
-        greedy, face = conversation.count("route-greedy"), conversation.count("route-face")
-        away = dist(self._state.at(found), conversation.site)
-        if not greedy + face:
-            return f"It is nearest itself, **r{found}**: no hops."
-        hops = f"{greedy + face} hop{'s' * (greedy + face > 1)}"
-        how = f" ({greedy} greedy, {face} face)" if face else ", all greedy"
-        return f"The search took **{hops}**{how} to **r{found}**, {away:.2f} m from the event."
-
-    def _table(self, conversation: OpenConversation, winner: RobotId, bids: tuple[Bid, ...]) -> str:
-        state = self._state
-        title = f"{len(bids)} bids, lowest wins" if len(bids) > 1 else "the only bid"
-        rows = [f"| {title} | cost | way | holds | would be left |", "|---|---|---|---|---|"]
-        for cost, robot in sorted(bids)[:MANY_BIDS]:
-            held, need = float(state.energies[robot]), state.foreseen(robot, conversation.site)
-            name = f"**r{robot}** goes" if robot == winner else f"r{robot}"
-            way = dist(state.at(robot), conversation.site)
-            rows.append(
-                f"| {name} | {cost:.2f} | {way:.2f} m | {held:.1f} J | {held - need:.1f} J |"
-            )
-        if len(bids) > MANY_BIDS:
-            rows.append(f"| and {len(bids) - MANY_BIDS} more | | | | |")
-        return "\n".join(rows)
+    def _draw(self, at: Moment, talk: OpenConversation) -> None:
+        outcome, parts = self._outcomes.get(talk.event, ("", []))
+        how = [self._told.get(talk.event, "")]
+        auctioneer = talk.auctioneer
+        if auctioneer is not None:
+            place = self._state.at(auctioneer)
+            how.append(words.found(self._state.scene, talk, auctioneer, place))
+            how.append(words.asked(talk, auctioneer))
+        title = f"## Event {talk.event + 1}{': ' + outcome if outcome else ''}"
+        self._rows.append((at, "\n\n".join([title, *parts, " ".join(how)])))
 
 
-def _names(robots: tuple[RobotId, ...]) -> str:
-    """Some robots by name."""
-    named = ", ".join(f"r{robot}" for robot in robots[:MANY_ASKED])
-    if len(robots) > MANY_ASKED:
-        named += f" and {len(robots) - MANY_ASKED} more"
-    return f"{len(robots)} neighbour{'s' * (len(robots) != 1)} ({named})"
+def title_card(state: FleetState) -> str:
+    """Which run it is."""
+    scene = state.scene
+    metric = f", bids are worth `{scene.metric}`" if scene.metric else ""
+    return (
+        f"## {scene.protocol}: {state.n} robots, {scene.world}, seed {scene.seed}\n\n"
+        f"Motion `{scene.motion}`{metric}; a trip is believed to cost"
+        f" {words.BELIEFS.get(scene.belief, scene.belief)}.\n\n"
+        "*How to read* explains the picture."
+    )

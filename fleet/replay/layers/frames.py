@@ -41,10 +41,7 @@ def frames(samples: NDArray[np.float64], poses: Poses, at: Moment) -> Frames:
         poses[robot] = tuple(samples[-1].tolist())
     else:
         times, lengths, rows = _filled(samples, poses)
-    when = Index(
-        times, np.full(len(times), at.round, np.int64), np.full(len(times), at.msg, np.int64)
-    )
-    return Frames(when, lengths, rows)
+    return Frames(Index.drive(times, at), lengths, rows)
 
 
 def joined(parts: list[Frames]) -> Frames:

@@ -50,7 +50,7 @@ class Lifetime(Layer):
         self._state = state
         self._starts = state.positions.astype(np.float32)
         self._levels.append(levels(state.energies, state.capacity))
-        self._cursors.append((Moment(0.0, 0, 0), 0))
+        self._cursors.append((Moment(0.0, 0, 0, 0.0), 0))
 
     def event_raised(self, at: Moment, event: int, source: int) -> None:
         """The rounds before are history."""

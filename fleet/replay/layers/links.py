@@ -1,106 +1,138 @@
-"""The radio links, following the bodies, and how well they hold the fleet together."""
+"""The links of the run, following the bodies, and how well they hold the fleet together."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import sqrt
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from fleet.replay.adjacency import Changes
 from fleet.replay.columns import Index, Moment, column, doubles, segments
 from fleet.replay.journal import TripEnd
-from fleet.replay.layers.frames import Poses, frames
 from fleet.replay.layers.network import (
     Codes,
-    MoverReach,
-    Spell,
-    any_spell,
     component_counts,
-    disc_spell,
-    gabriel_spell,
     in_all,
-    whole,
+    in_reach,
+    of_movers,
+    touching,
     without,
 )
 from fleet.replay.scheme import COMPONENTS, LINK_COUNT, ROUTING, UDG
 from fleet.replay.sink import Sink
 from fleet.replay.state import FleetState, Layer
-from protocols.messages import RobotId
-from protocols.topology import GraphName
-
-INTERVAL = 0.25  # [s] between two updates of the links of a mover
+from protocols.messages import Point, RobotId
 
 FloatArray = NDArray[np.float64]
-NOBODY = np.empty((1, 0, 2))
+NONE: Codes = np.empty(0, np.intp)
 
 
-class MoverPath(NamedTuple):
-    """Where everybody was from one departure or arrival to the next."""
+class MoverPaths(NamedTuple):
+    """Where everybody was, as far as links go, from one departure or arrival to the next."""
 
-    base: FloatArray  # (n, 2) of those at rest [m]; NaN: off the air
-    robots: list[RobotId]  # (j,) those under way
+    base: FloatArray  # (n, 2) of all at the start [m]; NaN: off the air
+    robots: list[RobotId]  # (j,) those who moved
     when: Index  # (k,)
-    places: FloatArray  # (k, j, 2) of those under way [m]
+    places: FloatArray  # (k, j, 2) of those who moved [m]
+
+
+class Spell(NamedTuple):
+    """The links over some moments."""
+
+    fixed: Codes  # among robots at rest, and there at every moment
+    varying: list[Codes]  # the others of each moment
+
+
+class Relinking(NamedTuple):
+    """What the run told of its links."""
+
+    at: Moment
+    places: Mapping[RobotId, Point]
+    linked: tuple[Codes, Codes]  # of the routing graph: new ones, and those that are gone
+    heard: tuple[Codes, Codes]  # likewise, who hears whom
 
 
 class Links(Layer):
-    """Both graphs, spell by spell: a spell lasts until somebody sets off or arrives."""
+    """Both graphs, spell by spell: a spell lasts until somebody sets off or arrives.
+
+    Links of the routing graph are the run's, and so is who hears whom; but where all within range
+    do, that follows from the places that the run linked robots at.
+    """
 
     def __init__(self) -> None:
-        self._courses: list[MoverPath] = []
-        self._disc_spells: list[Spell] = []
-        self._routing_spells: list[Spell] = []
-        self._samples: list[FloatArray] = []  # of this spell
-        self._poses: Poses = {}
+        self._paths: list[MoverPaths] = []
+        self._hearing: list[Spell] = []
+        self._routed: list[Spell] = []
+        self._changes: list[Relinking] = []  # of this spell, the first at its start
         self._counts: list[tuple[Moment, Codes, int, NDArray[np.bool_]]] = []
+        self._counted = True
 
     def run_started(self, state: FleetState) -> None:
-        """Everybody at rest."""
+        """Nobody is linked, until the run tells."""
         self._state = state
-        self._range = state.scene.radio_range
-        self._graph = cast(GraphName, state.scene.graph)
-        self._anew(Moment(0.0, 0, 0))
+        self._disc, self._range = state.scene.disc, state.scene.radio_range
+        self._base = state.positions.copy()
+        self._routing = self._udg = NONE
+        if self._disc:
+            self._udg = in_reach(self._base, self._range)
+        self._count_soon()
 
-    def event_raised(self, at: Moment, event: int, source: RobotId) -> None:
-        """A moment to see who has fallen silent, or is heard again."""
-        if (self._on_air != self._state.on_air).any():
-            if self._poses:
-                self._spell_over(at)
-            self._anew(at)
+    def air_changed(self, at: Moment) -> None:
+        """Who is off the air has no links."""
+        self._spell_over()
+        state = self._state
+        places = state.positions.copy()
+        known = ~np.isnan(self._base[:, 0])
+        places[known] = self._base[known]
+        self._base = np.where(state.on_air[:, None], places, np.nan)
+        off = np.flatnonzero(~state.on_air).tolist()
+        self._routing = self._routing[~touching(self._routing, state.n, off)]
+        self._udg = self._udg[~touching(self._udg, state.n, off)]
+        if self._disc:
+            self._udg = in_reach(self._base, self._range)
+        self._changes.append(_nothing(at))
 
     def departed(self, at: Moment, robot: RobotId) -> None:
         """A new spell."""
-        if self._poses:
-            self._spell_over(at)
-        self._poses[robot] = self._pose(at, robot)
-        self._begin(at)
-
-    def moved(self, at: Moment, samples: FloatArray) -> None:
-        """Keep the poses until the spell is over."""
-        self._latest = at
-        self._samples.append(samples[samples[:, 1] > self._start.time])
+        self._spell_over()
+        self._changes.append(_nothing(at))
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
-        """The spell is over, and what holds now is counted."""
-        self._spell_over(at)
-        del self._poses[trip.robot]
-        if (self._on_air != self._state.on_air).any():
-            self._anew(at)
-        else:
-            self._begin(at)
-            self._count(at)
+        """A new spell; what holds now is counted."""
+        self._spell_over()
+        self._changes.append(_nothing(at))
+        self._count_soon()
+
+    def relinked(
+        self, at: Moment, places: Mapping[RobotId, Point], linked: Changes, heard: Changes
+    ) -> None:
+        """Links as the run has them now."""
+        on_air = self._state.on_air
+        moved = {
+            robot: place
+            for robot, place in places.items()
+            if on_air[robot] and place != tuple(self._base[robot].tolist())
+        }
+        self._changes.append(Relinking(at, moved, _sorted(linked), _sorted(heard)))
+        if not self._counted:
+            self._spell_over()
+            self._changes.append(_nothing(at))
+            self._counts.append((at, self._routing, len(self._udg), on_air.copy()))
+            self._counted = True
 
     def send(self, sink: Sink) -> None:
         """Links, their number, and the components they form."""
-        if self._samples:
-            self._spell_over(self._latest)
-            self._begin(self._latest)
-        if self._courses:
-            _send_links(sink, UDG, self._courses, self._disc_spells)
-            _send_links(sink, ROUTING, self._courses, self._routing_spells)
+        if len(self._changes) > 1:
+            latest = self._changes[-1].at
+            self._spell_over()
+            self._changes.append(_nothing(latest))
+        if self._paths:
+            _send_links(sink, UDG, self._paths, self._hearing)
+            _send_links(sink, ROUTING, self._paths, self._routed)
         if self._counts:
             when, routing, udg, on_air = zip(*self._counts, strict=True)
             numbers = np.array([udg, [len(codes) for codes in routing]], float).T
@@ -111,71 +143,80 @@ class Links(Layer):
                 column(rr.Scalars.descriptor_scalars(), doubles(numbers.ravel()), [2] * len(when)),
             )
             sink.rows(COMPONENTS, when, column(rr.Scalars.descriptor_scalars(), doubles(pieces)))
-        self._courses, self._disc_spells, self._routing_spells, self._counts = [], [], [], []
+        self._paths, self._hearing, self._routed, self._counts = [], [], [], []
 
-    def _anew(self, at: Moment) -> None:
-        """Work out all links: at the start, and when somebody has fallen silent."""
-        self._on_air = self._state.on_air.copy()
-        self._begin(at)
-        self._courses.append(MoverPath(self._base, [], Index.of([at]), NOBODY))
-        self._udg = whole(self._base, self._range, "udg")
-        self._routing = whole(self._base, self._range, self._graph)
-        self._disc_spells.append(Spell(self._udg, [self._udg[:0]]))
-        self._routing_spells.append(Spell(self._routing, [self._routing[:0]]))
-        self._count(at)
+    def _count_soon(self) -> None:
+        """Once the run has told what links there are."""
+        self._counted = False
 
-    def _begin(self, at: Moment) -> None:
-        self._start = at
-        self._samples = []
-        self._base = np.where(self._on_air[:, None], self._state.positions, np.nan)
-
-    def _spell_over(self, at: Moment) -> None:
-        """Work out the links since the spell began, until now."""
-        course = self._course(at)
-        base, robots, _, places = course
-        if len(robots) == 1 and self._graph in ("gabriel", "udg"):
-            (robot,) = robots
-            reach = MoverReach.of(base, robot, places[:, 0], self._range)
-            disc = routing = disc_spell(self._udg, robot, reach)
-            if self._graph == "gabriel":
-                routing = gabriel_spell(self._routing, disc.fixed, base, robot, reach)
+    def _spell_over(self) -> None:
+        """Work out the links of each moment since the spell began."""
+        changes, self._changes = self._changes, []
+        if not changes:
+            return
+        n, base = self._state.n, self._base
+        robots = sorted({robot for change in changes for robot in change.places})
+        places = np.empty((len(changes), len(robots), 2))
+        now = base[robots]
+        for k, change in enumerate(changes):
+            for robot, place in change.places.items():
+                now[robots.index(robot)] = place
+            places[k] = now
+        if self._disc:
+            fixed = self._udg[~touching(self._udg, n, robots)]
+            hearing = Spell(fixed, of_movers(base, robots, places, self._range))
         else:
-            disc = any_spell(base, robots, places, self._range, "udg")
-            routing = any_spell(base, robots, places, self._range, self._graph)
-        self._courses.append(course)
-        self._disc_spells.append(disc)
-        self._routing_spells.append(routing)
-        self._udg = np.sort(np.concatenate([disc.fixed, disc.varying[-1]]))
-        self._routing = np.sort(np.concatenate([routing.fixed, routing.varying[-1]]))
+            hearing = self._follow(self._udg, [change.heard for change in changes], robots)
+        routed = self._follow(self._routing, [change.linked for change in changes], robots)
+        self._base = base.copy()
+        self._base[robots] = now
+        self._udg = np.sort(np.concatenate([hearing.fixed, hearing.varying[-1]]))
+        self._routing = np.sort(np.concatenate([routed.fixed, routed.varying[-1]]))
+        self._paths.append(MoverPaths(base, robots, Index.of([c.at for c in changes]), places))
+        self._hearing.append(hearing)
+        self._routed.append(routed if self._disc else both(routed, hearing))
 
-    def _course(self, at: Moment) -> MoverPath:
-        """The spell's moments, from its start to now, :data:`INTERVAL` apart."""
-        robots = sorted(self._poses)
-        last = [self._pose(at, robot) for robot in robots]
-        rows = np.array([[self._poses[robot] for robot in robots], last])
-        samples = np.concatenate([np.empty((0, 6)), *self._samples])
-        if len(samples):
-            when, _, poses = frames(samples, self._poses, at)
-            step = np.floor((when.times - self._start.time) / INTERVAL)
-            kept = np.flatnonzero(np.diff(step, append=step[-1:]) > 0)
-            rows = np.concatenate([rows[:1], poses.reshape(-1, *rows.shape[1:])[kept], rows[1:]])
-        self._poses.update(zip(robots, last, strict=True))
-        times = rows[:, 0, 1].copy()
-        times[0] = self._start.time
-        rounds, msgs = np.full(len(rows), at.round), np.full(len(rows), at.msg)
-        rounds[0], msgs[0] = self._start.round, self._start.msg
-        places = np.where(self._on_air[robots, None], rows[:, :, 2:4], np.nan)
-        return MoverPath(self._base, robots, Index(times, rounds, msgs), places)
+    def _follow(
+        self, before: Codes, changes: Sequence[tuple[Codes, Codes]], robots: Sequence[RobotId]
+    ) -> Spell:
+        """Links that the run tells of: those that nothing is told of stay as they are."""
+        touched = np.unique(np.concatenate([codes for change in changes for codes in change]))
+        fixed = without(before, touched)
+        fixed = fixed[~touching(fixed, self._state.n, robots)]
+        now = set(without(before, fixed).tolist())
+        varying = []
+        for new, gone in changes:
+            now.difference_update(gone.tolist())
+            now.update(new.tolist())
+            varying.append(np.array(sorted(now), np.intp))
+        return Spell(fixed, varying)
 
-    def _pose(self, at: Moment, robot: RobotId) -> tuple[float, ...]:
-        return (robot, at.time, *self._state.at(robot), 0.0, 0.0)
 
-    def _count(self, at: Moment) -> None:
-        self._counts.append((at, self._routing, len(self._udg), self._on_air))
+def both(one: Spell, other: Spell) -> Spell:
+    """The links that are in both."""
+    whole = [np.union1d(other.fixed, codes) for codes in other.varying]
+    fixed = in_all([one.fixed, other.fixed])
+    rest = without(one.fixed, fixed)
+    return Spell(
+        fixed,
+        [
+            in_all([np.union1d(rest, codes), there])
+            for codes, there in zip(one.varying, whole, strict=True)
+        ],
+    )
+
+
+def _nothing(at: Moment) -> Relinking:
+    return Relinking(at, {}, (NONE, NONE), (NONE, NONE))
+
+
+def _sorted(changes: Changes) -> tuple[Codes, Codes]:
+    new, gone = changes
+    return np.sort(np.array(new, np.intp)), np.sort(np.array(gone, np.intp))
 
 
 def _send_links(
-    sink: Sink, path: str, courses: Sequence[MoverPath], spells: Sequence[Spell]
+    sink: Sink, path: str, paths: Sequence[MoverPaths], spells: Sequence[Spell]
 ) -> None:
     """Links in three parts, each rewritten as seldom as it can be.
 
@@ -183,11 +224,11 @@ def _send_links(
     all of it; every spell writes the others that stay, every moment those that vary. With n
     robots about √(n/2) spells together take the least space.
     """
-    n = len(courses[0].base)
+    n = len(paths[0].base)
     size = max(1, round(sqrt(n / 2)))
-    bases = np.array([course.base for course in courses], np.float32)  # (s, n, 2)
-    starts = np.cumsum([0, *(len(course.places) for course in courses[:-1])])
-    when = Index.joined([course.when for course in courses])
+    bases = np.array([spell_.base for spell_ in paths], np.float32)  # (s, n, 2)
+    starts = np.cumsum([0, *(len(spell_.places) for spell_ in paths[:-1])])
+    when = Index.joined([spell_.when for spell_ in paths])
     firsts = np.arange(0, len(spells), size)
     lasting = [in_all([spell.fixed for spell in spells[f : f + size]]) for f in firsts.tolist()]
     resting = [without(spell.fixed, lasting[s // size]) for s, spell in enumerate(spells)]
@@ -203,10 +244,10 @@ def _send_links(
     moment = np.repeat(np.arange(len(varying)), counts)
     spell = np.searchsorted(starts, moment, side="right") - 1
     ends = bases[spell[:, None], pairs]
-    for j in range(max(len(course.robots) for course in courses)):
-        mover = np.array([c.robots[j] if j < len(c.robots) else -1 for c in courses])
+    for j in range(max(len(spell_.robots) for spell_ in paths)):
+        mover = np.array([c.robots[j] if j < len(c.robots) else -1 for c in paths])
         places = np.concatenate(
-            [c.places[:, j] if j < len(c.robots) else np.zeros((len(c.places), 2)) for c in courses]
+            [c.places[:, j] if j < len(c.robots) else np.zeros((len(c.places), 2)) for c in paths]
         )
         link, end = np.nonzero(pairs == mover[spell][:, None])
         ends[link, end] = places[moment[link]]

@@ -23,6 +23,7 @@ class Witness(Observer):
 
     def __init__(self):
         self.raised, self.said, self.awards, self.departures, self.trips = [], [], [], [], []
+        self.relinks = set()
         self.samples, self.energies, self.over, self.silent = [], [], [], []
 
     def run_started(self, fleet):
@@ -46,6 +47,9 @@ class Witness(Observer):
 
     def moved(self, samples):
         self.samples.append(samples)
+
+    def relinked(self, time):
+        self.relinks.add(round(1e9 * time))
 
     def trip_ended(self, event, trip):
         self.trips.append((event, trip, len(self.said)))

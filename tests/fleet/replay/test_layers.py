@@ -15,7 +15,7 @@ from fleet.replay.layers.frames import frames
 from fleet.replay.layers.label_placement import LabelPlacement
 from fleet.replay.layers.lifetime import ticks
 
-AT = Moment(0.0, 1, 1)
+AT = Moment(0.0, 1, 1, 0.0)
 
 
 class TestFrames:
@@ -59,14 +59,14 @@ class TestGrowing:
         for k, size in enumerate(sizes, 1):
             new = [(float(k), float(i), 0.0, 0.0) for i in range(size)]
             total += new
-            growing.extend(Moment(0.0, 1, k), new)
+            growing.extend(Moment(0.0, 1, k, 0.0), new)
             drawn = 0 if not growing.rows else growing.rows[-1][2]
             assert [*growing.items[:drawn], *growing.loose] == total
         written = sum(end - start for _, start, end in growing.rows)
         assert written <= 60 * len(total)  # not the square of it
-        growing.complete(Moment(0.0, 1, len(sizes) + 1))
+        growing.complete(Moment(0.0, 1, len(sizes) + 1, 0.0))
         assert growing.rows[-1][1:] == (0, len(total))
-        growing.restart(Moment(0.0, 2, len(sizes) + 1))
+        growing.restart(Moment(0.0, 2, len(sizes) + 1, 0.0))
         assert growing.rows[-1][1] == growing.rows[-1][2]
 
     def test_what_was_sent_is_forgotten(self):
@@ -160,7 +160,7 @@ def test_energy_grows_lighter():
 
 
 def test_times_are_whole_nanoseconds():
-    index = Index.of([Moment(0.1 + 0.2, 1, 2), Moment(1125.05, 3, 4)])
+    index = Index.of([Moment(0.1 + 0.2, 1, 2, 0.45), Moment(1125.05, 3, 4, 2000.0)])
     assert index.columns()[0].as_arrow_array().cast("int64").to_pylist() == [
         300_000_000, 1_125_050_000_000
     ]  # fmt: skip

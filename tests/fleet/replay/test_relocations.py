@@ -83,8 +83,12 @@ def test_the_log_and_the_card_tell_of_them(run):
     said = [text[0] for text in recording.rows(scheme.LOG, "TextLog:text").values]
     cards = [text[0] for text in recording.rows(scheme.CARD, "TextDocument:text").values]
     for event, (robot, (x, y)), _ in witness.orders:
-        assert f"r{robot} is sent to ({x:.2f}, {y:.2f}) m" in said
-        assert any(f"## Event {event.id + 1} is carried on" in card for card in cards)
+        assert f"event {event.id + 1}: r{robot} is sent to ({x:.2f}, {y:.2f}) m" in said
+    assert any(
+        card.startswith(f"## Event {event.id + 1}: carried on")
+        for card in cards
+        for event, *_ in witness.orders
+    )
     back = sum("has relocated" in line for line in said)
     assert back == len(witness.ends) > 0
 
