@@ -32,6 +32,6 @@ SCHEMAS: dict[str, dict[str, pa.DataType]] = {
     },
 }  # fmt: skip
 """Columns of each table. Times in s, places and lengths in m, energies in J; a cost in the unit of
-its metric; NaN for what did not come to be.
+its metric; nothing for what did not come to be.
 """
 SORTED_BY = {TRANSCRIPT: "number", TRIPS: "ended", TASKS: "event"}

@@ -137,7 +137,9 @@ class Lanes(Layer):
         for path, lane in self._lanes.items():
             if lane.rows:
                 when, states = zip(*lane.rows, strict=True)
-                sink.rows(path, when, column(rr.StateChange.descriptor_state(), texts(states)))
+                entered = texts([state for state in states if state is not None])
+                counts = [int(state is not None) for state in states]
+                sink.rows(path, when, column(rr.StateChange.descriptor_state(), entered, counts))
                 lane.rows = []
                 names, paint = [*lane.colours], [*lane.colours.values()]
                 sink.static(

@@ -135,4 +135,4 @@ def _column(table: str, name: str, kind: pa.DataType, cells: Sequence[Any]) -> r
     if kind is IDS:
         flat = pa.array([one for cell in cells for one in cell], pa.int32())
         return column(own(table, name), flat, [len(cell) for cell in cells])
-    return column(own(table, name), pa.array(cells, kind))
+    return column(own(table, name), pa.array(cells, kind, from_pandas=True))  # NaN: nothing

@@ -309,7 +309,7 @@ class TestTables:
             assert row["attempts"] == line.attempts
             if sent.bid is None:
                 assert row["bidder"] == -1
-                assert np.isnan(row["cost"])
+                assert row["cost"] is None
             else:
                 assert (row["bidder"], row["cost"]) == (sent.bid.robot, sent.bid.cost)
                 assert row["metric"] == "energy-left"
