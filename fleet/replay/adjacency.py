@@ -19,21 +19,28 @@ class Adjacency:
         self._of: list[set[RobotId]] = [set() for _ in range(n)]
 
     def update(self, links: Iterable[tuple[RobotId, set[RobotId]]]) -> Changes:
-        """Some robots have these links now; returns what differs."""
-        new: list[int] = []
-        gone: list[int] = []
+        """Some robots have these links now; returns what differs. Of two who differ on a link the
+        latter is believed.
+        """
+        new: set[int] = set()
+        gone: set[int] = set()
         for robot, now in links:
             before = self._of[robot]
             if now == before:
                 continue
             for other in now - before:
-                new.append(self._code(robot, other))
+                self._turn(robot, other, gone, new)
                 self._of[other].add(robot)
             for other in before - now:
-                gone.append(self._code(robot, other))
+                self._turn(robot, other, new, gone)
                 self._of[other].discard(robot)
             self._of[robot] = now
-        return new, gone
+        return sorted(new), sorted(gone)
 
-    def _code(self, one: RobotId, other: RobotId) -> int:
-        return min(one, other) * self._n + max(one, other)
+    def _turn(self, one: RobotId, other: RobotId, before: set[int], now: set[int]) -> None:
+        """A link is ``now`` what it was not, unless it just became what it was ``before``."""
+        code = min(one, other) * self._n + max(one, other)
+        if code in before:
+            before.remove(code)
+        else:
+            now.add(code)
