@@ -13,8 +13,8 @@ from typing_extensions import override
 
 from fleet.motion import Trip
 from fleet.observer import Excerpt, Observer
-from fleet.replay.adjacency import Adjacency, Changes
 from fleet.replay.journal import RELOCATED, Note, Scene, TripEnd
+from fleet.replay.known_links import Changes, KnownLinks
 from fleet.replay.writer_process import WriterProcess
 from protocols.messages import Award, Event, Move, RobotId
 from protocols.topology import NOWHERE
@@ -109,7 +109,10 @@ class RerunRecorder(Observer):
         self._batteries = [robot.battery for robot in fleet.robots]
         hole, labels, spec = fleet.arena.hole, fleet.labels, fleet.spec
         self._fleet = fleet
-        self._neighbours, self._hearers = Adjacency(len(fleet.robots)), Adjacency(len(fleet.robots))
+        self._neighbours, self._hearers = (
+            KnownLinks(len(fleet.robots)),
+            KnownLinks(len(fleet.robots)),
+        )
         self._placed = dict.fromkeys(range(len(fleet.robots)), NOWHERE)
         self._heard_of = {robot.id for robot in fleet.robots if robot.on_air}
         self._linked = self._refreshed = -INTERVAL

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.replay.adjacency import Changes
 from fleet.replay.columns import Moment
 from fleet.replay.journal import RecordedLine, Scene, TripEnd
+from fleet.replay.known_links import Changes
 from fleet.replay.scheme import BEAT
 from fleet.replay.sink import Sink
 from protocols.messages import Award, Point, RobotId

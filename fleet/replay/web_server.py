@@ -54,7 +54,7 @@ def serving(parts: Mapping[str, Part], recording: Path) -> Iterator[str]:
             path = urlsplit(self.path).path
             if path == RECORDING:
                 with recording.open("rb") as file:
-                    self._send("application/octet-sink", file, recording.stat().st_size)
+                    self._send("application/octet-stream", file, recording.stat().st_size)
             elif path in parts:
                 part = parts[path]
                 self._send(part.kind, io.BytesIO(part.content), len(part.content))

@@ -10,9 +10,9 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from fleet.replay.adjacency import Changes
 from fleet.replay.columns import Index, Moment, column, doubles, segments
 from fleet.replay.journal import TripEnd
+from fleet.replay.known_links import Changes
 from fleet.replay.layers.network import (
     Codes,
     component_counts,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet.replay.adjacency import Adjacency
+from fleet.replay.known_links import KnownLinks
 from fleet.replay.layers.network import (
     component_counts,
     in_all,
@@ -39,7 +39,7 @@ def test_movers_links_are_those_of_the_whole(movers):
 @settings(deadline=None)
 @given(st.data())
 def test_changes_of_an_adjacency_lead_to_it(data):
-    adjacency, links = Adjacency(6), set()
+    adjacency, links = KnownLinks(6), set()
     for _ in range(4):
         told = {}
         for robot in data.draw(st.lists(st.integers(0, 5), unique=True)):

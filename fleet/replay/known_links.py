@@ -11,7 +11,7 @@ Changes: TypeAlias = tuple[list[int], list[int]]
 """Links that are new and links that are gone, u < v of n robots as u·n + v each."""
 
 
-class Adjacency:
+class KnownLinks:
     """Links among n robots, either way: one that only one end knows is a link too."""
 
     def __init__(self, n: int) -> None:
