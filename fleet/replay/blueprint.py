@@ -43,6 +43,7 @@ class Stage(NamedTuple):
     capacity: float  # of the largest battery [J]
     name: str  # which run it is
     root: str = ""  # before all paths, with a slash after it
+    frame: tuple[float, float, float, float] | None = None  # x, y to x, y [m]; None: all of it
 
     def __call__(self, path: str) -> str:
         """Where something is in the recording."""
@@ -57,9 +58,7 @@ def blueprint(
     return _whole(tabs, timeline, span)
 
 
-def side_by_side(
-    stages: Sequence[Stage], timeline: str = scheme.ROUND, parted: bool = True
-) -> rrb.Blueprint:
+def side_by_side(stages: Sequence[Stage], timeline: str = scheme.ROUND) -> rrb.Blueprint:
     """Several recordings under one cursor: a column each, and their curves in one plot."""
     now = rrb.Horizontal(
         *(rrb.Vertical(_world(stage), _card(stage), row_shares=[8, 5]) for stage in stages),
@@ -70,7 +69,7 @@ def side_by_side(
         name="Lifetime",
     )
     difference = rrb.TextDocumentView(origin=scheme.DIFFERENCE, name="Where they part")
-    return _whole(rrb.Tabs(now, curves, *[difference] * parted, active_tab=0), timeline)
+    return _whole(rrb.Tabs(now, curves, difference, active_tab=0), timeline)
 
 
 def _compared(stages: Sequence[Stage]) -> list[tuple[str, str, tuple[float, float] | None]]:
@@ -194,6 +193,9 @@ def _world(stage: Stage) -> rrb.View:
 
 def _bounds(stage: Stage) -> rrb.VisualBounds2D:
     side = max(stage.width, stage.height)
+    if stage.frame is not None:
+        left, low, right, high = stage.frame
+        return rrb.VisualBounds2D(x_range=[left, right], y_range=[-high, -low])
     return rrb.VisualBounds2D(
         x_range=[-0.06 * side, stage.width + 0.15 * side],
         y_range=[-stage.height - 0.03 * side, 0.085 * side],

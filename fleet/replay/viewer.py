@@ -29,6 +29,8 @@ def view(
     *,
     web: bool = False,
     timeline: str | None = None,
+    event: int | None = None,
+    robot: int | None = None,
     tell: Callable[[str], object] = print,
 ) -> None:
     """Show recordings until the window is closed, or Ctrl-C.
@@ -36,7 +38,9 @@ def view(
     Args:
         recordings: .rrd files; several are shown side by side.
         web: serve them to a browser on this machine instead of opening a window.
-        timeline: the one to scrub by at first; None: the time, or for several the round.
+        timeline: the one to scrub by at first; None: the story, or for several the round.
+        event: frame this one, as it is numbered in the picture, and play it.
+        robot: likewise the first event that this robot drove to.
         tell: is given the address to open in a browser.
 
     Raises:
@@ -44,7 +48,7 @@ def view(
     """
     if current_thread() is main_thread():  # shells have what they start behind ignore Ctrl-C
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    with _ready(recordings, timeline) as ready:
+    with _ready(recordings, timeline, event, robot) as ready:
         try:
             if web:
                 with serve(ready) as address:
@@ -94,7 +98,7 @@ def _web_viewer() -> dict[str, Part]:
 
 
 def spawn_viewer() -> str:
-    """Open a viewer that outlives this process; returns the address to sink to.
+    """Open a viewer that outlives this process; returns the address to stream to.
 
     Raises:
         ValueError: no window can be opened here.
@@ -139,18 +143,20 @@ def free_port() -> int:
 
 
 @contextmanager
-def _ready(recordings: Sequence[Path], timeline: str | None) -> Iterator[Path]:
+def _ready(
+    recordings: Sequence[Path], timeline: str | None, event: int | None, robot: int | None
+) -> Iterator[Path]:
     """One file to show: the only recording as it is, or several arranged in one."""
     for path in recordings:
         _check(path)
-    if len(recordings) == 1 and timeline is None:
+    if len(recordings) == 1 and timeline is event is robot is None:
         yield recordings[0]
         return
-    from fleet.replay.comparison import arrange
+    from fleet.replay.comparison import Aim, arrange
 
     with tempfile.TemporaryDirectory() as folder:
         arranged = Path(folder) / "arranged.rrd"
-        arrange(recordings, arranged, timeline)
+        arrange(recordings, arranged, timeline, Aim(event, robot))
         yield arranged
 
 
