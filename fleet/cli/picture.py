@@ -53,6 +53,8 @@ MOMENT = MomentType()
               help="Draw this: round=12, msg=345 or sim_time=6.78 (seconds).")  # fmt: skip
 @click.option("--from", "start", type=MOMENT, metavar="MOMENT", help="Make a clip from here")
 @click.option("--to", "stop", type=MOMENT, metavar="MOMENT", help="to here, both included.")
+@click.option("--chart", type=click.IntRange(min=1), metavar="EVENT",
+              help="Draw the sequence chart of what was said about this event.")  # fmt: skip
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True,
               help="A picture: .png, .pdf, .svg ...; a clip: .gif, .webp, or .mp4 with ffmpeg.",
               )  # fmt: skip
@@ -72,6 +74,7 @@ def command(
     at: dict[str, float] | None,
     start: dict[str, float] | None,
     stop: dict[str, float] | None,
+    chart: int | None,
     out: Path,
     **style: Any,
 ) -> None:
@@ -83,14 +86,23 @@ def command(
 
     given = {name: value for name, value in style.items() if value is not None}
     pace = {name: given.pop(name) for name in ("frames_per_second", "speed")}
-    if (at is None) == (start is None and stop is None) or (start is None) != (stop is None):
-        raise bad("", "expected either --at, for a picture, or --from and --to, for a clip")
+    wanted = [at is not None, chart is not None, start is not None or stop is not None]
+    if sum(wanted) != 1 or (start is None) != (stop is None):
+        raise bad(
+            "",
+            "expected either --at, for a picture, or --from and --to, for a clip, or --chart, for"
+            " what was said about an event",
+        )
     try:
         out.absolute().parent.mkdir(parents=True, exist_ok=True)
         if at is not None:
             from fleet.replay.still import picture
 
             picture(recording, at, out, **given)
+        elif chart is not None:
+            from fleet.replay.chart_figure import chart as draw_chart
+
+            draw_chart(recording, chart, out, **given)
         elif start is not None and stop is not None:
             from fleet.replay.clip import clip
 

@@ -34,7 +34,7 @@ class Aim(NamedTuple):
 
 
 def arrange(
-    recordings: Sequence[Path], out: Path, timeline: str | None = None, aim: Aim = Aim()
+    recordings: Sequence[Path], out: Path, timeline: str | None = None, aim: Aim | None = None
 ) -> None:
     """Write recordings into one, side by side; or a single one, to be scrubbed by ``timeline``, or
     framed to show what is aimed at.
@@ -46,7 +46,7 @@ def arrange(
     if not 1 <= len(recordings) <= MOST:
         raise ValueError(f"{len(recordings)} recordings to compare; expected 1 to {MOST}")
     loaded = [Recording(path) for path in recordings]
-    single = len(loaded) == 1
+    single, aim = len(loaded) == 1, aim or Aim()
     if single:
         stage, span = framed(loaded[0], aim)
         stages, layout = [stage], blueprint(stage, timeline or STORY, span)
@@ -101,7 +101,7 @@ def framed(recording: Recording, aim: Aim) -> tuple[Stage, Span | None]:
     robots = {
         r for line in lines if line["event"] == event for r in (line["sender"], *line["heard"])
     }
-    span = _span(recording, event, trips)
+    span = _span(recording, event)
     places = recording.at(scheme.ROBOTS, "Points2D:positions", STORY, span.start)
     spots = np.array(
         [(tasks[event]["told_x"], tasks[event]["told_y"])]
@@ -112,7 +112,7 @@ def framed(recording: Recording, aim: Aim) -> tuple[Stage, Span | None]:
     return stage._replace(frame=(*low.tolist(), *high.tolist())), span
 
 
-def _span(recording: Recording, event: int, trips: Sequence[dict[str, Any]]) -> Span:
+def _span(recording: Recording, event: int) -> Span:
     """From when an event is told to a robot to when it is over, on the story."""
     rows = recording.rows(scheme.LOG, "TextLog:text")
     mine = [
@@ -139,9 +139,8 @@ def difference(one: Recording, other: Recording) -> str:
         "| event | " + " | ".join(f"{run.path.name}" for run in (one, other)) + " |",
         "|---|---|---|",
     ]
-    for event in [e for e in shared if e >= parted][:20]:
-        if _signature(first[event]) != _signature(second[event]):
-            rows.append(f"| {event} | {_told(first[event])} | {_told(second[event])} |")
+    others = [e for e in shared if _signature(first[e]) != _signature(second[e])]
+    rows += [f"| {e} | {_told(first[e])} | {_told(second[e])} |" for e in others[:20]]
     spent = [_energy(run, parted) for run in (one, other)]
     return (
         f"## They part at event {parted}\n\n"
@@ -164,7 +163,7 @@ def _told(task: dict[str, Any]) -> str:
 def _energy(recording: Recording, event: int) -> float:
     """What trips to an event and all later ones took [J]."""
     return sum(
-        trip["energy"]
+        float(trip["energy"])
         for trip in recording.table(scheme.TRIPS).to_pylist()
         if trip["event"] >= event
     )

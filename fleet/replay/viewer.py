@@ -149,7 +149,7 @@ def _ready(
     """One file to show: the only recording as it is, or several arranged in one."""
     for path in recordings:
         _check(path)
-    if len(recordings) == 1 and timeline is event is robot is None:
+    if len(recordings) == 1 and {timeline, event, robot} == {None}:
         yield recordings[0]
         return
     from fleet.replay.comparison import Aim, arrange
