@@ -46,7 +46,9 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
         local=False,
         searches=False,
     ),
-    "bfs": ProtocolEntry(flooding.bfs, f"after RODAA as in {PAPER}, section 5: one task at a time", searches=False),
+    "bfs": ProtocolEntry(
+        flooding.bfs, f"after RODAA as in {PAPER}, section 5: one task at a time", searches=False
+    ),
     "face": ProtocolEntry(gfgf.face, BOSE),
     "gfg": ProtocolEntry(central.gfg, f"{BOSE}; the destination from a location service", False),
     "gfgf1": ProtocolEntry(gfgf.gfgf1, f"{PAPER}, section 2.5"),
@@ -58,7 +60,9 @@ PROTOCOLS: dict[str, ProtocolEntry] = {
     "mia-ta": ProtocolEntry(
         mia_ta, f"after MIA-TA as in {PAPER}, Table 1: who cuts off no neighbour bids"
     ),
-    "optimum": ProtocolEntry(central.optimum, "a yardstick: all robots are known", local=False, searches=False),
+    "optimum": ProtocolEntry(
+        central.optimum, "a yardstick: all robots are known", local=False, searches=False
+    ),
     "rfta1": ProtocolEntry(rfta.rfta1, f"{PAPER}, section 4.1"),
     "rfta2": ProtocolEntry(rfta.rfta2, f"{PAPER}, section 4.2"),
     "rfta2-iterated": ProtocolEntry(
