@@ -102,6 +102,7 @@ HISTOGRAM: Final = "lifetime/energy_left"
 # Columns of our own beside what is drawn.
 ROBOT_ENERGY: Final = "energy"  # [J] of Robot, at ROBOTS and MOVERS
 ROBOT_ID: Final = "id"  # at MOVERS; at ROBOTS it is the place in the row
+ROBOT_PLANNED: Final = "planned"  # [m] at MOVERS: where it should be by its plan
 ROBOT_HEADING: Final = "heading"  # [rad] at MOVERS
 
 # Colours 0xRRGGBBAA.

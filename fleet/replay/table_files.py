@@ -49,7 +49,9 @@ def export_tables(recording: Path, folder: Path, *, mcap: bool = False) -> list[
 
 
 def poses(recording: Recording) -> pa.Table:
-    """Where robots under way were: time [s], robot, x, y [m], heading [rad], energy [J]."""
+    """Where robots under way were: time [s], robot, x, y [m] and where by its plan, heading [rad],
+    energy [J].
+    """
     rows = recording.rows(scheme.MOVERS, "Robot:id")
     counts = [len(row) for row in rows.values]
     columns = {"time": np.repeat(rows.moments[scheme.SIM_TIME] / 1e9, counts)}
@@ -57,6 +59,9 @@ def poses(recording: Recording) -> pa.Table:
     places = recording.rows(scheme.MOVERS, "Points2D:positions").values
     spots = _flat([np.asarray(row).reshape(-1) for row in places], np.float32).reshape(-1, 2)
     columns |= {"x": spots[:, 0], "y": spots[:, 1]}
+    plans = recording.rows(scheme.MOVERS, f"Robot:{scheme.ROBOT_PLANNED}").values
+    due = _flat([np.asarray(row).reshape(-1) for row in plans], np.float32).reshape(-1, 2)
+    columns |= {"planned_x": due[:, 0], "planned_y": due[:, 1]}
     for name in (scheme.ROBOT_HEADING, scheme.ROBOT_ENERGY):
         columns[name] = _flat(recording.rows(scheme.MOVERS, f"Robot:{name}").values, np.float32)
     return pa.table(columns)

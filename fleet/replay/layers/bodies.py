@@ -21,6 +21,7 @@ from fleet.replay.scheme import (
     ROBOT_ENERGY,
     ROBOT_HEADING,
     ROBOT_ID,
+    ROBOT_PLANNED,
     ROBOTS,
 )
 from fleet.replay.sink import Sink
@@ -75,7 +76,7 @@ class Bodies(Layer):
         state = self._state
         (x, y), (to_x, to_y) = state.at(robot), state.under_way[robot].site
         heading = float(np.arctan2(to_y - y, to_x - x))
-        self._poses[robot] = (robot, at.time, x, y, heading, float(state.energies[robot]))
+        self._poses[robot] = (robot, at.time, x, y, heading, float(state.energies[robot]), x, y)
         self._at_rest(at)
         self._stand(at)
 
@@ -180,6 +181,7 @@ class Bodies(Layer):
             column(own("Robot", ROBOT_ID), whole(poses[:, 0]), lengths),
             column(own("Robot", ROBOT_HEADING), reals(heading), lengths),
             column(own("Robot", ROBOT_ENERGY), reals(poses[:, 5]), lengths),
+            column(own("Robot", ROBOT_PLANNED), pairs(poses[:, 6:8]), lengths),
         )
         if not self._names:
             return

@@ -20,7 +20,7 @@ class Frames(NamedTuple):
 
     when: Index  # (k,)
     lengths: NDArray[np.intp]  # (k,) robots under way at each moment
-    poses: NDArray[np.float64]  # (sum of lengths, 6)
+    poses: NDArray[np.float64]  # (sum of lengths, 8)
 
 
 def still(poses: Poses, at: Moment) -> Frames:

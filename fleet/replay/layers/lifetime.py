@@ -11,6 +11,7 @@ import rerun as rr
 from numpy.typing import NDArray
 from PIL import Image
 
+from fleet.motion import SAMPLE_FIELDS
 from fleet.replay.colormap import TABLE, energy_colours, levels
 from fleet.replay.columns import Moment, column, segments
 from fleet.replay.journal import TripEnd
@@ -67,7 +68,7 @@ class Lifetime(Layer):
             self._levels.append(now)
         self._levels[at.round] = now
         if len(self._paths) < TRIPS:
-            poses = np.concatenate([np.empty((0, 6)), *self._driving])
+            poses = np.concatenate([np.empty((0, len(SAMPLE_FIELDS))), *self._driving])
             mine = poses[poses[:, 0] == trip.robot, 2:4]
             picked = mine[:: max(1, len(mine) // CORNERS)]
             self._paths.append(np.array([trip.origin, *picked, trip.end], np.float32))
