@@ -36,11 +36,11 @@ def chart(
     from matplotlib.lines import Line2D
 
     from fleet.replay.floor_figure import THEMES, FloorFigure, rgb
-    from fleet.replay.readback import Recording
+    from fleet.replay.readback import sound
     from fleet.replay.still import check_ending
 
     check_ending(out, set(Figure().canvas.get_supported_filetypes()), "picture")
-    loaded = Recording(recording)
+    loaded = sound(recording)
     style, scale = THEMES[theme], FloorFigure.scale(size)
     lines = [row for row in loaded.table(scheme.TRANSCRIPT).to_pylist() if row["event"] == event]
     if not lines:

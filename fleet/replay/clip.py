@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from fleet.replay.readback import Recording
 
+
 ENDINGS = {"gif", "webp", "mp4"}
 MEANT = (*KIND_COLOURS.values(), LOST_COLOUR, EVENT_COLOUR, RELOCATION_COLOUR, ROUTING_COLOUR)
 SHADES = 64  # of energy
@@ -81,7 +82,7 @@ def clip(
     from PIL import Image
 
     from fleet.replay.floor_figure import FloorFigure
-    from fleet.replay.readback import Recording
+    from fleet.replay.readback import sound
 
     for name, value in (("speed", speed), ("frames a second", frames_per_second)):
         if not value > 0.0:
@@ -90,7 +91,7 @@ def clip(
     ffmpeg = shutil.which("ffmpeg")
     if out.suffix.lower() == ".mp4" and ffmpeg is None:
         raise ValueError(f"{out}: an .mp4 takes ffmpeg, which is not installed; a .gif does not")
-    loaded = Recording(recording)
+    loaded = sound(recording)
     moments = frames(loaded, start, stop, speed / frames_per_second)
     floor = FloorFigure(loaded, theme)
     drawn: list[Image.Image] = []

@@ -13,7 +13,7 @@ import rerun as rr
 from fleet.replay import scheme
 from fleet.replay.blueprint import Span, Stage, blueprint, side_by_side
 from fleet.replay.columns import Index, column, doubles
-from fleet.replay.readback import NANO, Recording
+from fleet.replay.readback import NANO, Recording, sound
 from fleet.replay.scheme import APPLICATION, COMPARISON, ROUND, STORY
 
 MOST = 6  # recordings side by side
@@ -45,7 +45,7 @@ def arrange(
     """
     if not 1 <= len(recordings) <= MOST:
         raise ValueError(f"{len(recordings)} recordings to compare; expected 1 to {MOST}")
-    loaded = [Recording(path) for path in recordings]
+    loaded = [sound(path) for path in recordings]
     single, aim = len(loaded) == 1, aim or Aim()
     if single:
         stage, span = framed(loaded[0], aim)

@@ -42,12 +42,12 @@ def picture(
     from matplotlib.figure import Figure
 
     from fleet.replay.floor_figure import FloorFigure
-    from fleet.replay.readback import Recording
+    from fleet.replay.readback import sound
 
     kinds = Figure().canvas.get_supported_filetypes()
     check_ending(out, set(kinds), "picture")
     moment = the_moment(at)
-    floor = FloorFigure(Recording(recording), theme)
+    floor = FloorFigure(sound(recording), theme)
     figure = draw(floor, *moment, size, dots_per_inch)
     figure.savefig(out, facecolor=figure.get_facecolor())
     return out

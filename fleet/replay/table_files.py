@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from fleet.replay import scheme
-from fleet.replay.readback import Recording
+from fleet.replay.readback import Recording, sound
 from fleet.replay.table_schemas import SCHEMAS
 
 TIMES = {"transcript": "time", "trips": "ended", "tasks": "raised", "poses": "time"}
@@ -34,7 +34,7 @@ def export_tables(recording: Path, folder: Path, *, mcap: bool = False) -> list[
     """
     if mcap and find_spec("mcap") is None:
         raise ValueError("MCAP is not installed; expected: pip install 'talking-fleet[mcap]'")
-    loaded = Recording(recording)
+    loaded = sound(recording)
     tables = {path.rpartition("/")[2]: loaded.table(path) for path in SCHEMAS}
     tables["poses"] = poses(loaded)
     folder.mkdir(parents=True, exist_ok=True)
