@@ -139,7 +139,7 @@ def test_in_free_traffic_bodies_touch_but_hardly_sink_in(crowd, seed, radius, ar
     outcomes = work(watch, rng, 25, 40)
     watch.check(-0.001)
     assert sum(outcomes.values()) == 40
-    assert watch.fastest <= 1.5 * spec.cruise
+    assert watch.fastest <= 1.75 * spec.cruise  # 0.3 m/s to catch up, and pushed by others
 
 
 def test_free_robots_meet_head_on_and_find_around_each_other(driving):
