@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-slow test-all lint bench docs browser clean
+.PHONY: demo test test-slow test-all lint bench mutate docs browser clean
 
 demo: $(VENV)/.ready ## one run with the defaults, recorded
 	$(BIN)/fleet run --rrd out/demo.rrd
@@ -25,6 +25,10 @@ lint: $(VENV)/.ready-dev ## style, types, import contracts
 
 bench: $(VENV)/.ready-dev ## the measured figures, as ratios within one run
 	$(BIN)/python benchmarks/run.py
+
+mutate: $(VENV)/.ready-dev ## small changes that a test is to notice; PACKAGE=protocols.auctions for a part
+	$(BIN)/python -m mutmut run $(if $(PACKAGE),'$(PACKAGE).*')
+	$(BIN)/python -m mutmut results
 
 docs: $(VENV)/.ready-dev ## the documentation's pages, in out/docs/index.html
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs out/docs
@@ -49,4 +53,4 @@ $(VENV)/.ready-dev: $(VENV)/bin/python pyproject.toml constraints.txt
 	@touch $@ $(VENV)/.ready
 
 clean: ## forget everything that was made
-	rm -rf $(VENV) out build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) out mutants build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
