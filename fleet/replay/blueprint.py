@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import rerun as rr
 import rerun.blueprint as rrb
@@ -14,7 +14,6 @@ from fleet.replay import scheme
 from fleet.replay.layers.event_log import DECIDED, FAILED
 from fleet.replay.layers.lifetime import MAP_HEIGHT, MAP_WIDTH
 from fleet.replay.layers.sequence_chart import HEIGHT, WIDTH
-from fleet.replay.table_schemas import SCHEMAS
 
 RIM = 1.3  # radius of the dark rim around a robot, in its radii
 UNPICKABLE = rrb.EntityBehavior(interactive=False)  # robots are what is asked for
@@ -258,14 +257,10 @@ def _chart(stage: Stage) -> rrb.View:
 
 def _table(stage: Stage, path: str, name: str) -> rrb.View:
     """A table that can be sorted, filtered and scrolled through."""
-    table = path.rpartition("/")[2]
-    columns: list[Any] = [f"{stage(path)}:{table}:{column}" for column in SCHEMAS[path]]
     return rrb.DataframeView(
         origin=stage(path),
         name=name,
-        query=rrb.archetypes.DataframeQuery(
-            timeline=scheme.STORY, select=columns, auto_scroll=True
-        ),
+        query=rrb.archetypes.DataframeQuery(timeline=scheme.STORY, auto_scroll=True),
     )
 
 

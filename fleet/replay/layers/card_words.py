@@ -95,6 +95,8 @@ def why_not(belief: Belief | None, talk: OpenConversation, robot: RobotId) -> st
         return "sees no way there"
     if belief.cost > belief.energy:
         return f"believes {belief.cost:.1f} J, holds {belief.energy:.1f} J"
+    if robot == talk.auctioneer:
+        return "the auctioneer, goes only if nobody else can"
     return "would not have done better, or came too late"
 
 
