@@ -95,9 +95,12 @@ def why_not(belief: Belief | None, talk: OpenConversation, robot: RobotId) -> st
         return "sees no way there"
     if belief.cost > belief.energy:
         return f"believes {belief.cost:.1f} J, holds {belief.energy:.1f} J"
-    if robot == talk.auctioneer:
-        return "the auctioneer, goes only if nobody else can"
-    return "would not have done better, or came too late"
+    last = robot == talk.auctioneer
+    return (
+        "the auctioneer, goes only if nobody else can"
+        if last
+        else "would not have done better, or came too late"
+    )
 
 
 def silent(talk: OpenConversation, award: Award) -> list[RobotId]:
