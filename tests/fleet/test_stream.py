@@ -311,7 +311,7 @@ living = st.fixed_dictionaries(
     {
         "protocol": st.sampled_from(
             ["rfta2", "rfta2ge", "gfgf2a", "gfgf1", "rfta1", "rfta2-iterated", "k-saap", "bfs",
-             "aap", "mia-ta", "face", "greedy", "optimum", "gfg"]
+             "aap", "mia-ta", "face", "greedy", "optimum", "gfg", "rfta3"]
         ),
         "motion": st.sampled_from(["straight", "straight", "path", "physics"]),
         "world": st.sampled_from(["random", "random-hole"]),
@@ -364,12 +364,24 @@ living = st.fixed_dictionaries(
             }
         ),
         "handler": st.sampled_from(["random", "nearest-known"]),
+        "sensors": st.one_of(
+            st.none(),
+            st.fixed_dictionaries(
+                {
+                    "radio_range": st.just(3.0),
+                    "miss": st.sampled_from([0.0, 0.5, 1.0]),
+                    "error": st.sampled_from([0.0, 2.0]),
+                    "duplicates": st.sampled_from([0.0, 0.5]),
+                }
+            ),
+        ),
         "rounds": st.just(40),
     }
 )  # fmt: skip
 
 
 def check_living(keys):
+    keys = {key: value for key, value in keys.items() if value is not None}
     simulation, summary, log = played(**keys)
     check_conservation(simulation, summary)
     states = Counter(task.state for task in simulation.book.tasks)
