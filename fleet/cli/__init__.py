@@ -16,7 +16,7 @@ from fleet.cli.exits import exits
 COMMANDS = {
     "check": "Check a results folder, or a protocol or metric of yours.",
     "energy": "Test Eq. (1), energy linear in distance, against motion.",
-    "export": "Write the tables of a recording as files.",
+    "export": "Write the tables of a recording, or a run's trips as logs of robots.",
     "list": "All that a scenario can name, with its sources.",
     "paper": "Reproduce the paper: its figures, tables and claims.",
     "picture": "Draw a moment of a recording, or a clip of it.",

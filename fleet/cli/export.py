@@ -1,4 +1,4 @@
-"""``fleet export``: the tables of a recording as files."""
+"""``fleet export``: a recording's tables as files, or a run's trips as logs of real robots."""
 
 from __future__ import annotations
 
@@ -8,13 +8,42 @@ import click
 
 
 @click.command("export")
-@click.argument("recording", type=click.Path(path_type=Path))
-@click.option("--out", "folder", required=True, type=click.Path(path_type=Path),
-              help="Folder for transcript, trips, tasks and poses as Parquet.")  # fmt: skip
+@click.argument("source", required=False, type=click.Path(path_type=Path))
+@click.option("--out", "tables", type=click.Path(path_type=Path),
+              help="Folder for a recording's transcript, trips, tasks and poses as Parquet.")  # fmt: skip
 @click.option("--mcap", is_flag=True, help="Also as MCAP, for Foxglove.")
-def command(recording: Path, folder: Path, mcap: bool) -> None:
-    """Write the tables of a RECORDING: every transmission, trip, task and pose is a row."""
-    export_recording(recording, folder, mcap=mcap)
+@click.option("--log", "logs", type=click.Path(path_type=Path),
+              help="Folder for a scenario's trips: a CSV of each robot that drives, and log.toml.")  # fmt: skip
+@click.option("--robot", help="With --log: a preset, or the file of one.")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
+              help="With --log: any scenario key, such as rounds=40. Repeatable.")  # fmt: skip
+def command(
+    source: Path | None,
+    tables: Path | None,
+    mcap: bool,
+    logs: Path | None,
+    robot: str | None,
+    settings: tuple[str, ...],
+) -> None:
+    """Write what a recording holds, or what a run's robots would have logged.
+
+    With --out SOURCE is a recording: every transmission, trip, task and pose becomes a row.
+
+    With --log SOURCE is a scenario, the paper's by default. It is played, and its trips are
+    written as a real robot's log has them, which `fleet energy --log` reads: times, places,
+    speeds, turning rates and power, 60 times a second, without what only a simulation knows.
+    What a robot's owner knows, mass, track and motors, is in log.toml.
+    """
+    from fleet.scenario.errors import bad
+
+    if (tables is None) == (logs is None):
+        raise bad("", "expected --out DIR for a recording's tables, or --log DIR for logs of trips")
+    if tables is not None:
+        if source is None:
+            raise bad("", "expected the recording whose tables --out is for")
+        export_recording(source, tables, mcap=mcap)
+    elif logs is not None:
+        export_trips(source, logs, {} if robot is None else {"robot": robot}, settings)
 
 
 def export_recording(recording: Path, folder: Path, *, mcap: bool) -> None:
@@ -29,3 +58,16 @@ def export_recording(recording: Path, folder: Path, *, mcap: bool) -> None:
         raise bad("--out", f"cannot write to {folder}: {error.strerror or error}") from error
     except ValueError as error:
         raise bad("", str(error)) from error
+
+
+def export_trips(
+    scenario: Path | None, folder: Path, given: dict[str, str], settings: tuple[str, ...]
+) -> None:
+    """Play one run and write its trips as logs."""
+    from fleet.assembly import run
+    from fleet.logs.exporting import TripLog
+    from fleet.scenario.loading import load_scenario
+
+    loaded = load_scenario(scenario, given, settings)
+    run(loaded, [TripLog(folder, loaded.robot)])
+    click.echo(f"Logs: {folder}. Judge them with:  fleet energy --log {folder} --out DIR")

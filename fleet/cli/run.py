@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 @click.argument("scenario", required=False, type=click.Path(path_type=Path))
 @click.option("--protocol", help="A name from `fleet list`, or file.py:name.  [rfta2]")
 @click.option("--world", help="A name from `fleet list`.  [random]")
+@click.option("--robot", help="A preset, or the file of one, as `fleet energy --log` writes.")
 @click.option("--motion", help="straight, path or physics.  [physics]")
 @click.option("--robots", type=Value("integer"), help="How many.  [100]")
 @click.option("--range", "range_", type=Value("metres"), help="Radio range r.  [2.5]")

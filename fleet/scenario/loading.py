@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fleet.catalogue import known_name, look_up
+from fleet.robot import RobotSpec
 from fleet.scenario.binding import convert, unusable
 from fleet.scenario.choices import check, homes
 from fleet.scenario.errors import BadInput, bad, or_list, shortened, shown, unknown
@@ -127,14 +128,32 @@ def _choice(value: Any, key: str) -> dict[str, Any]:
 
 
 def _robot(value: Any) -> dict[str, Any]:
-    """A preset, or a table of what differs from one, as the fields of a RobotSpec."""
+    """A preset, or a table of what differs from one, as the fields of a RobotSpec.
+
+    A preset may also be a file with such a table, as ``fleet energy --log`` writes them.
+    """
     if not isinstance(value, str | Mapping):
         raise bad("robot", f"is {shown(value)}; expected the name of a preset, or a table")
     table = {"preset": value} if isinstance(value, str) else dict(value)
     preset = table.pop("preset", "small")
     if not isinstance(preset, str):
-        raise bad("robot.preset", f"is {shown(preset)}; expected the name of a preset")
+        raise bad("robot.preset", f"is {shown(preset)}; expected the name of a preset, or a file")
+    if preset.endswith(".toml"):
+        return merged(_robot_from(Path(preset)), table)
     return merged(plain(look_up("preset", preset, "robot.preset")), table)
+
+
+def _robot_from(path: Path) -> dict[str, Any]:
+    """The robot of a file of its own, as the fields of a RobotSpec."""
+    file = read_toml(path)
+    if str(file.data.get("preset", "")).endswith(".toml"):
+        raise bad("robot.preset", f"{path}: names another file; expected the name of a preset")
+    try:
+        robot = _robot(file.data)
+        convert(RobotSpec, robot, "")
+    except BadInput as error:
+        raise file.located(error) from error
+    return robot
 
 
 def _located(

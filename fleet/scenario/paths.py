@@ -14,6 +14,8 @@ from worlds.occupancy import OccupancyGrid
 
 OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
 """The keys that may hold ``file.py:name``."""
+ROBOTS = ("robot", "robot.preset")
+"""The keys that may hold the file of a robot."""
 
 
 @cache
@@ -44,6 +46,13 @@ def anchored(value: Any, folder: Path, key: str = "") -> Any:
         }
     if isinstance(value, list):
         return [anchored(item, folder, key) for item in value]
-    if isinstance(value, str) and (key in path_keys() or (key in OBJECTS and ".py" in value)):
+    if isinstance(value, str) and _is_path(value, key):
         return value if value.startswith("~") else str(folder / value)
     return value
+
+
+def _is_path(value: str, key: str) -> bool:
+    """Whether the text at a dotted key is the path of a file."""
+    if key in ROBOTS:
+        return value.endswith(".toml")
+    return key in path_keys() or (key in OBJECTS and ".py" in value)
