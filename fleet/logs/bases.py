@@ -26,6 +26,8 @@ from fleet.scenario.errors import bad
 Floats = NDArray[np.float64]
 
 _ROUNDS = 8
+_CLEAN = 0.02  # root mean square error, of that of the windows' energy
+_SHORT = 0.25  # [s] of windows of a log that is as clean as that
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +87,28 @@ def _linear_where_best(
 ) -> tuple[LawFamily, float]:
     """The law by forces of one chassis, and the squares that it leaves.
 
+    Of a log that it fits as closely as only a simulation is fitted, on short windows: these tell
+    apart what goes together over whole drives.
+    """
+    family, error = _iterated(ground, chassis, start, lag, over, None)
+    typical = float(np.sqrt(np.mean(family.windows.energy**2)))
+    if np.sqrt(error / max(1, len(family.windows))) < _CLEAN * typical:
+        return _iterated(ground, chassis, start, lag, over, _SHORT)
+    return family, error
+
+
+def _iterated(
+    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float, over: float,
+    length: float | None,
+) -> tuple[LawFamily, float]:  # fmt: skip
+    """The law on windows of one ``length`` [s], and the squares that it leaves.
+
     Gauss and Newton's iteration from the law by motion; runs that are left out are left out of the
     fit, not of the point at which the law was made linear.
     """
+    if length is not None:
+        length = max(length, 10.0 * start.samples.period)
+    plain = windows(start.samples, length)
     found = start.law(start.richest)
     scale = np.array([chassis.efficiency, 1.0, chassis.efficiency, 1.0, chassis.efficiency])
     parameters = scale * [found[term] for term in TERMS]
@@ -95,8 +116,8 @@ def _linear_where_best(
     best, least = parameters, np.inf
     for _ in range(_ROUNDS):
         samples = samples_of(ground, _rates_at(chassis, parameters), lag=lag, over=over)
-        cut = windows(samples)
-        terms, why = identified(cut, start.windows, turns=ground.turns)
+        cut = windows(samples, length)
+        terms, why = identified(cut, plain, turns=ground.turns)
         error = float(((cut.terms @ parameters + cut.rest - cut.energy) ** 2).sum())
         if error < least:
             best, least = parameters, error
@@ -107,7 +128,7 @@ def _linear_where_best(
         if done:
             break
     samples = samples_of(ground, _rates_at(chassis, best), lag=lag, over=over)
-    cut = windows(samples)
+    cut = windows(samples, length)
     return LawFamily(
         "forces", samples, cut, trips(samples), sums_of(cut), [tuple(terms)], why
     ), least  # fmt: skip

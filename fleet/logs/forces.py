@@ -25,7 +25,7 @@ from fleet.robot import RobotSpec
 Floats = NDArray[np.float64]
 
 ONSETS = (0.4, 100.0)  # [rad/m] of a skid steer, and of round wheels with a caster
-_SOFT = 0.02  # [rad/s] over which scrub sets in on the spot
+_SOFT, _SOFTER = 1e-4, 0.02  # [rad/s] over which scrub, and power of turning, set in on the spot
 _ROLLS = 1e-3  # [m/s] below which a wheel's resistance fades
 
 
@@ -84,9 +84,9 @@ class _Side:
         return force
 
 
-def scrub_share(chassis: Chassis, v: Floats, omega: Floats) -> Floats:
+def scrub_share(chassis: Chassis, v: Floats, omega: Floats, soft: float = _SOFT) -> Floats:
     """How much of the scrub there is (n,), -1 to 1: tyres that roll yield before they slide."""
-    share: Floats = np.clip(omega / (_SOFT + chassis.scrub_onset * np.abs(v)), -1.0, 1.0)
+    share: Floats = np.clip(omega / (soft + chassis.scrub_onset * np.abs(v)), -1.0, 1.0)
     return share
 
 
@@ -123,7 +123,7 @@ def linearised(
     terms = np.zeros((len(v), 5))
     rest = np.zeros(len(v))
     terms[:, 1] = 1.0
-    terms[:, 3] = np.abs(scrub_share(chassis, v, omega))
+    terms[:, 3] = np.abs(scrub_share(chassis, v, omega, _SOFTER))
     for side in _sides(chassis, time, v, omega):
         force = side.force(parameters)
         gain = np.where(
