@@ -51,3 +51,9 @@ def test_each_example_is_tested():
     tested = Path(__file__).read_text(encoding="utf-8")
     for example in EXAMPLES.glob("*.py"):
         assert f'"{example.name}"' in tested
+
+
+def test_a_log_of_three_wheels_is_judged(tmp_path):
+    text = said_by("own_log.py", tmp_path / "out")
+    assert "half within 0 %" in text
+    assert (tmp_path / "out" / "report.html").is_file()

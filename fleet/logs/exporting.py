@@ -34,7 +34,7 @@ _KEPT = ("robot", "time", "x", "y", "heading", "energy")
 _ROBOT, _TIME, _X, _Y, _HEADING, _ENERGY = range(len(_KEPT))
 
 
-class TripLog(Observer):
+class TripExport(Observer):
     """Writes the trips of a run into a folder when the run is over, a file for each robot.
 
     Raises:
