@@ -15,16 +15,33 @@ if TYPE_CHECKING:
 
 @click.command("export")
 @click.argument("source", required=False, type=click.Path(path_type=Path))
-@click.option("--out", "tables", type=click.Path(path_type=Path),
-              help="Folder for a recording's transcript, trips, tasks and poses as Parquet.")  # fmt: skip
+@click.option(
+    "--out",
+    "tables",
+    type=click.Path(path_type=Path),
+    help="Folder for a recording's transcript, trips, tasks and poses as Parquet.",
+)
 @click.option("--mcap", is_flag=True, help="Also as MCAP, for Foxglove.")
-@click.option("--log", "logs", type=click.Path(path_type=Path),
-              help="Folder for a scenario's trips: a CSV of each robot that drives, and log.toml.")  # fmt: skip
-@click.option("--speeds", default="1,0.7,0.4", metavar="SHARES",
-              help="With --log: shares of the cruise speed, a run at each.  [1,0.7,0.4]")  # fmt: skip
+@click.option(
+    "--log",
+    "logs",
+    type=click.Path(path_type=Path),
+    help="Folder for a scenario's trips: a CSV of each robot that drives, and log.toml.",
+)
+@click.option(
+    "--speeds",
+    default="1,0.7,0.4",
+    metavar="SHARES",
+    help="With --log: shares of the cruise speed, a run at each.  [1,0.7,0.4]",
+)
 @click.option("--robot", help="With --log: a preset, or the file of one.")
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
-              help="With --log: any scenario key, such as rounds=40. Repeatable.")  # fmt: skip
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="With --log: any scenario key, such as rounds=40. Repeatable.",
+)
 def command(
     source: Path | None,
     tables: Path | None,
