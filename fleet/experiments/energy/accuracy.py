@@ -80,24 +80,29 @@ def expanded(groups: int) -> tuple[float, float]:
     return tail, 1.0 - tail
 
 
-def usable_from(
-    straight: ArrayLike,
-    drained: ArrayLike,
-    predicted: ArrayLike,
-    tolerance: float,
-    width: float = 0.25,
+def worst_bin(
+    straight: ArrayLike, drained: ArrayLike, predicted: ArrayLike, width: float = 0.5
 ) -> float:
-    """From which straight distance [m] on a prediction is within a relative ``tolerance``.
+    """By which share a prediction is off in the worst bin of ``width`` [m] of straight distance.
 
-    Of what was drained, that is: the sums are compared over bins of ``width`` [m]; the distance
-    is the lower edge of the first bin from which on none is off by more. inf: the last bin is.
+    The sums over the bins are compared, as a share of what was drained.
     """
     bins = np.floor(np.asarray(straight, float) / width + 1e-9).astype(int)
     above = np.bincount(bins, np.asarray(drained, float))
     below = np.bincount(bins, np.asarray(predicted, float))
     there = above > 0.0
-    off = np.zeros(len(above), bool)
-    off[there] = np.abs(below[there] / above[there] - 1.0) > tolerance
+    return float(np.abs(below[there] / above[there] - 1.0).max()) if there.any() else nan
+
+
+def usable_from(intercept: float, slope: float, rate: float, tolerance: float, to: float) -> float:
+    """From which distance [m] on ``rate`` [J/m] is within a relative ``tolerance`` of a line.
+
+    The line, ``intercept`` [J] and ``slope`` [J/m], is what trips drain. A line is asked, not bins
+    of trips, so that few trips find what many do. To the centimetre; inf: not even at ``to`` [m].
+    """
+    distance = np.arange(1, round(100.0 * to) + 1) / 100.0
+    drained = intercept + slope * distance
+    off = np.abs(rate * distance - drained) > (tolerance + 1e-9) * np.abs(drained)
     if off[-1]:
         return inf
-    return float(width * (np.flatnonzero(off)[-1] + 1)) if off.any() else 0.0
+    return float(distance[np.flatnonzero(off)[-1]] + 0.01) if off.any() else 0.0

@@ -7,9 +7,16 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 
 from fleet.experiments.energy.energy_report import write_report
-from fleet.experiments.energy.lives import lives
 from fleet.experiments.energy.models import CORRECTED, fit
-from fleet.experiments.energy.settings import FULL, PAPER, Size, lifetimes, single_tasks, streams
+from fleet.experiments.energy.settings import (
+    FULL,
+    PAPER,
+    Size,
+    headlines,
+    lifetimes,
+    single_tasks,
+    streams,
+)
 from fleet.experiments.energy.trip_table import TripTable
 from fleet.study.result import StudyResult
 from fleet.study.runner import Progress, Say, run_jobs, silent
@@ -44,7 +51,8 @@ def energy_study(
     single, streamed = trips.where(part="single"), trips.where(part="stream")
     with watch("lifetimes") as progress:
         lived = run_jobs(
-            lifetimes(size, seed, launch_costs(single)), out / "lifetimes",
+            [*lifetimes(size, seed, launch_costs(single)), *headlines(size, seed)],
+            out / "lifetimes",
             workers=workers, progress=progress, say=say, meta=meta,
         )  # fmt: skip
     page = write_report(
@@ -52,7 +60,7 @@ def energy_study(
         single,
         streamed,
         TripTable.of(lived.table("trips")),
-        lives(list(lived.rows())),
+        list(lived.rows()),
         command,
     )
     return [driven, lived], page

@@ -8,18 +8,24 @@ from math import isfinite, isinf
 
 import numpy as np
 
-from fleet.experiments.energy.accuracy import Accuracy, accuracy, ratio_interval, usable_from
+from fleet.experiments.energy.accuracy import Accuracy, accuracy, ratio_interval
 from fleet.experiments.energy.launching import launch_cost
+from fleet.experiments.energy.linearity import TOLERABLE, Linearity, linearity
 from fleet.experiments.energy.lives import BASELINE, Life, find
 from fleet.experiments.energy.models import CORRECTED, EQ1, fit, held_out
-from fleet.experiments.energy.settings import AS_IN_THE_PAPER, OPEN, PAPER, PROTOCOLS
+from fleet.experiments.energy.settings import (
+    AS_IN_THE_PAPER,
+    HUSKIES,
+    OPEN,
+    PAPER,
+    PROTOCOLS,
+)
 from fleet.experiments.energy.trip_table import TripTable, closure
 from fleet.robot import RobotSpec
 from fleet.study.statistics import Interval
 
 WORLDS = ("pit", "rooms", "warehouse")  # with things to drive around
 LONG = 3.5  # [m] of trips that are long
-TOLERABLE = 0.10  # share by which Eq. (1) may be off and still be used
 SOURCES = {
     "path": "Eq. (1) on the planned path",
     "corrected": "the corrected model",
@@ -32,8 +38,8 @@ CLOSED = 1e-3  # share of its energy that a trip's parts may leave unexplained
 class Findings:
     """The study in a few numbers. Ratios are of what was drained to what Eq. (1) says."""
 
-    within_10: float  # straight distance from which on Eq. (1) is within 10 % [m]
-    within_5: float  # [m]
+    paper: Linearity  # of single trips of the paper's robot
+    skid: Linearity | None  # of a robot that steers by skidding
     longest: float  # that was driven [m]
     asked: Interval  # ratio over the trips of lifetimes on the open floor
     asked_trips: int
@@ -56,11 +62,12 @@ def findings(
 ) -> Findings:
     """From the trips of single tasks, streams and lifetimes, and the lifetimes themselves."""
     paper = single.where(setting=PAPER).arrived()
+    skid = single.where(setting=HUSKIES).arrived()
     asked = lived.where(place=OPEN).arrived()
     long = single.take(single["straight"] >= LONG).arrived()
     return Findings(
-        within_10=usable_from(paper["straight"], paper["drained"], paper.eq1, TOLERABLE),
-        within_5=usable_from(paper["straight"], paper["drained"], paper.eq1, 0.5 * TOLERABLE),
+        paper=linearity(paper),
+        skid=linearity(skid) if len(skid) else None,
         longest=float(paper["straight"].max()),
         asked=ratio_interval(asked["drained"], asked.eq1, asked["seed"]),
         asked_trips=len(asked),
@@ -88,16 +95,41 @@ def verdict(found: Findings) -> str:
     """When the linear assumption may be used and when not, from what was measured."""
     bounds = [bound for bound in found.asked if isfinite(bound)]
     fits = max(abs(1.0 / bound - 1.0) for bound in bounds) <= TOLERABLE
+    one = found.paper
+    line = f"a line of its own, {one.intercept.value:.1f} J and {one.slope.value:.1f} J a metre,"
     return (
-        f"Eq. (1), energy linear in the straight distance, may be used for long trips over an open"
-        f" floor: {_usable(found.within_10, 'a tenth', found.longest)},"
-        f" and {_usable(found.within_5, 'a twentieth', found.longest)}."
-        f" It may {'also' if fits else 'not'} be used for what the protocols ask for: the"
+        f"Energy is {_kind(one)}. Eq. (1) has no intercept: over an open floor"
+        f" {_usable(one.within_10, 'a tenth', found.longest)}, and"
+        f" {_usable(one.within_5, 'a twentieth', found.longest)}; {line} is within"
+        f" {100.0 * one.line_off:.0f} % at all lengths (R² {one.r2:.3f})."
+        f" {_on_skid(found.skid)}"
+        f"Eq. (1) may {'' if fits else 'not '}be used for what the protocols ask for: the"
         f" {found.asked_trips:,} trips, {found.asked_mean:.2f} m long on average, by which robots"
-        f" arrived in whole lifetimes drained {_more(found.asked.value)} than it says. Where it may"
-        f" not, Eq. (1) on the planned path and {found.launch.value:.1f} J a launch come nearer:"
-        f" R² = {found.corrected.r2:.4f} on tasks that this was not fitted on."
+        f" arrived in whole lifetimes drained {_more(found.asked.value)} than it says. Eq. (1) on"
+        f" the planned path and {found.launch.value:.1f} J a launch has R² ="
+        f" {found.corrected.r2:.4f} on tasks that this was not fitted on."
     ).replace("-", "−")
+
+
+def _kind(one: Linearity) -> str:
+    proportional = one.within_10 == 0.0
+    if one.linear:
+        return "linear in the straight distance" + (
+            ", and proportional to it, within a tenth"
+            if proportional
+            else ", but not proportional to it"
+        )
+    return "neither linear in the straight distance nor proportional to it"
+
+
+def _on_skid(skid: Linearity | None) -> str:
+    if skid is None:
+        return ""
+    return (
+        f"Of a robot that steers by skidding (husky) it is {_kind(skid)}: the best line is off"
+        f" by up to {100.0 * skid.line_off:.0f} % (R² {skid.r2:.2f}), and Eq. (1) has R²"
+        f" {skid.eq1_r2:.2f}. "
+    )
 
 
 def details(found: Findings) -> list[str]:
@@ -111,7 +143,7 @@ def details(found: Findings) -> list[str]:
         f"What Eq. (1) leaves out comes with every launch, not with every metre: turning, speeding"
         f" up and braking cost {found.launch.value:.2f} J"
         f" [{found.launch.low:.2f}, {found.launch.high:.2f}], however short the way"
-        f" ({found.launch_formula:.2f} J by the drive law)."
+        f" ({found.launch_formula:.2f} J foreseen for a straight drive)."
     )
     corrected = (
         f"With a launch added, and the planned path for the straight line, it is off by"

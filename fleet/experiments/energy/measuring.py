@@ -6,7 +6,7 @@ results of before a thing of the past.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import cos, dist, fsum, inf, pi, sin
 from typing import Any
 
@@ -20,7 +20,7 @@ from fleet.observer import Observer
 from fleet.placement import start
 from fleet.power import Battery
 from fleet.results import Summary
-from fleet.robot import Robot, RobotSpec
+from fleet.robot import Appraisal, Robot, RobotSpec
 from fleet.scenario.choices import make_motion, make_world
 from fleet.scenario.loading import scenario_from
 from fleet.study.job import Job
@@ -55,9 +55,48 @@ def drive_tasks(job: Job) -> Row:
 def play(job: Job) -> Row:
     """A scenario as it is; its summary, what failed trips took, and its trips if asked for."""
     log = TripLog()
-    summary = run(scenario_from(job.scenario), [log]).as_dict()
+    scenario, choices = scenario_from(job.scenario), ChoiceLog()
+    foreseen = scenario.motion.parameters.get("belief") == "driven"
+    summary = run(scenario, [log, choices] if foreseen else [log]).as_dict()
     row = summary | {"energy_failed": log.failed, "unbroken": log.unbroken}
+    if foreseen:
+        row |= {"choices": choices.made, "misled": choices.misled, "regret": choices.regret}
     return row | {"tables": {"trips": log.rows if "trips" in job.tables else []}}
+
+
+class ChoiceLog(Observer):
+    """How often Eq. (1) would choose another robot than the cost that is foreseen.
+
+    Robots must bid by the latter. Those count that were asked and that can afford the trip; the
+    one with the most energy left after it is chosen, as the paper's metric has it.
+    """
+
+    def __init__(self) -> None:
+        self.made = 0  # choices among two robots or more
+        self.misled = 0  # of these, where Eq. (1) chooses another one
+        self.regret = 0.0  # energy that its choices have left less, in all [J]
+
+    def run_started(self, fleet: Fleet) -> None:
+        """Everybody is in place."""
+        self._fleet = fleet
+
+    def appraised(self, event: Event, appraisals: Sequence[Appraisal], time: float) -> None:
+        """Choose twice among those who were asked."""
+        able = [one for one in appraisals if one.cost <= one.energy]
+        if len(able) < 2:
+            return
+        spec = self._fleet.spec
+        rate = spec.power.per_metre(spec.cruise)
+
+        def said(one: Appraisal) -> float:
+            here = self._fleet.robots[one.robot].position
+            return one.energy - rate * dist(here, event.position)
+
+        best = max(able, key=lambda one: one.energy - one.cost)
+        taken = max(able, key=said)
+        self.made += 1
+        self.misled += taken.robot != best.robot
+        self.regret += (best.energy - best.cost) - (taken.energy - taken.cost)
 
 
 class TripLog(Observer):
@@ -112,12 +151,12 @@ def row_of(trip: Trip, heading: float, drained: float, spec: RobotSpec) -> Row:
         "per_metre": spec.power.per_metre(spec.cruise),  # [J/m] of Eq. (1)
         "drained": drained,  # from the battery
         "energy_path": path,
-        "energy_ramps": fsum(accounts)
+        "energy_launch": fsum(accounts)
         - path
         - accounts.scrub
         - accounts.waiting
         - accounts.contact,
-        "energy_pivots": accounts.scrub,
+        "energy_scrub": accounts.scrub,
         "energy_waiting": accounts.waiting,
         "energy_contact": accounts.contact,
         "waited": trip.waited,

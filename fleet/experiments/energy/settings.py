@@ -15,6 +15,7 @@ PLAY = "fleet.experiments.energy.measuring:play"
 PAPER = "the paper’s"  # setting, with the defaults
 NO_INERTIA = "no inertia at all"  # the control
 PIONEERS = "40 Pioneers 3-DX"  # as many as find their ways
+HUSKIES = "8 Huskies"  # skid steer
 SHORTEST, LONGEST = 0.05, 7.0  # straight distance of single tasks [m]
 EVER = 1e6  # [J] a battery that energy plays no part in
 
@@ -34,10 +35,11 @@ class Size:
     seeds: int = 60  # of lifetimes
     recorded: int = 20  # of these, with all their trips
     streams: int = 8  # seeds for each kind of traffic
+    places: int = 5  # of :data:`PLACES`, where lifetimes are lived
 
 
 FULL = Size()
-QUICK = Size(placements=4, tasks=125, seeds=6, recorded=2, streams=1)
+QUICK = Size(placements=3, tasks=60, seeds=4, recorded=2, streams=1, places=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,18 @@ def _robot(**keys: Any) -> dict[str, Any]:
     return {"robot": keys}
 
 
+BODIES: Mapping[str, Mapping[str, Any]] = {
+    "weighs 30 kg": _robot(mass=30.0),
+    "efficiency 0.3": _robot(efficiency=0.3),
+    "efficiency 0.9": _robot(efficiency=0.9),
+    "scrubs with 1 N·m": _robot(scrub=1.0),
+    "no heat in the motors": _robot(windings=0.0),
+    "heat of 0.05 W/N² in the motors": _robot(windings=0.05),
+    "carries 3 kg unknown to it": {"motion": "physics", **_robot(payload=3.0)},
+    "parameters off by up to 20 %": {"motion": "physics", **_robot(error=0.2)},
+}
+"""Robots that differ from the paper's in what Eq. (1) does not speak of."""
+
 SETTINGS = (
     Variation("paper", PAPER),
     *(Variation("radius", f"radius {r} m", _robot(radius=r)) for r in (0.05, 0.15, 0.2)),
@@ -63,13 +77,30 @@ SETTINGS = (
     *(Variation("density", f"{n} robots", {"robots": n}) for n in (10, 50, 200)),
     *(Variation("world", world, {"world": world}) for world in ("pit", "rooms", "warehouse")),
     Variation("build", PIONEERS, {"robots": 40, **_robot(preset="pioneer")}),
+    Variation("build", HUSKIES, {"robots": 8, **_robot(preset="husky")}),
     Variation("build", "drives backwards too", _robot(reverse=True)),
     Variation("build", "holonomic", _robot(drive="holonomic")),
-    Variation("build", "weighs 30 kg", _robot(mass=30.0)),
-    Variation("build", "scrubs with 1 N·m", _robot(scrub=1.0)),
     Variation("build", NO_INERTIA, _robot(preset="ideal")),
+    *(Variation("body", name, varied) for name, varied in BODIES.items()),
 )
-"""The paper's arena and robots, and one thing different at a time."""
+"""The paper's arena and robots, and one thing different at a time.
+
+What a controller does not know, its prediction does not either: these robots are driven by forces.
+"""
+
+PRESETS = {"small": PAPER, "pioneer": PIONEERS, "husky": HUSKIES, "ideal": NO_INERTIA}
+"""In which setting each robot is that has a name."""
+
+HEADLINES = {
+    PAPER: {},
+    **{f"scrubs with {s:g} N·m": _robot(scrub=s) for s in (0.6, 1.2, 2.4)},
+    "acceleration 0.3 m/s²": _robot(acceleration=0.3),
+    **BODIES,
+}
+"""Robots with which the protocols are compared: the paper's, and one thing different at a time."""
+
+COMPARED = (("rfta3", "rfta2ge"), ("rfta2ge", "rfta2"), ("rfta2", "gfgf2a"))
+"""Protocols whose lifetimes are divided, one by the other."""
 
 ENGINE = Variation("engine", "in pymunk", {"motion": "physics"})
 """The paper's setting again, its bodies stepped by the engine."""
@@ -145,7 +176,7 @@ def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Jo
     ``launch`` has the cost of a launch [J] for each setting, as it was fitted.
     """
     for number in range(seed, seed + size.seeds):
-        for place in PLACES:
+        for place in PLACES[: size.places]:
             ways: dict[str, Any] = {bid: {"name": "path", "belief": bid} for bid in BIDS}
             ways["corrected"]["per_launch"] = launch[place.setting]
             if place.name == OPEN:
@@ -166,3 +197,18 @@ def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Jo
                         tables=("trips",) if kept else (),
                         function=PLAY,
                     )  # fmt: skip
+
+
+def headlines(size: Size, seed: int) -> Iterator[Job]:
+    """Lifetimes of all protocols with other robots, bids and all else as they are by default."""
+    for number in range(seed, seed + size.seeds):
+        for name, varied in HEADLINES.items():
+            for protocol in PROTOCOLS:
+                yield Job.of(
+                    {"motion": "path", **varied, "protocol": protocol, "seed": number},
+                    cell=f"{name}, {protocol}",
+                    labels={
+                        "part": "headline", "setting": name, "protocol": protocol, "seed": number,
+                    },
+                    function=PLAY,
+                )  # fmt: skip

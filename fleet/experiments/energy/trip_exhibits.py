@@ -9,9 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fleet.experiments.energy.accuracy import accuracy, ratio_interval, usable_from
+from fleet.experiments.energy.accuracy import accuracy, ratio_interval
 from fleet.experiments.energy.exhibits import Column, Exhibit
 from fleet.experiments.energy.launching import launch_cost
+from fleet.experiments.energy.linearity import TOLERABLE as TOLERANCE
+from fleet.experiments.energy.linearity import linearity
 from fleet.experiments.energy.models import CORRECTED, MODELS, Fit, fit, halves
 from fleet.experiments.energy.settings import LONGEST, SETTINGS, SHORTEST
 from fleet.experiments.energy.trip_table import PARTS, TripTable
@@ -21,7 +23,6 @@ from fleet.study.report.style import DIM, INK, MARKERS, SERIES, WIDTH
 EDGES = (SHORTEST, 0.25, 0.5, 1.0, 2.0, 3.5, 5.0, LONGEST + 1e-9)  # [m]
 FINE = tuple(np.linspace(0.0, LONGEST, 29).tolist())  # [m]
 MOST_DOTS = 3000
-TOLERANCE = 0.1
 PART_COLOURS = dict(
     zip(PARTS, (SERIES[5], SERIES[1], SERIES[2], SERIES[4], SERIES[3]), strict=True)
 )
@@ -126,9 +127,10 @@ def by_part(trips: TripTable) -> Exhibit:
     right.legend(loc="upper right")
     return Exhibit(
         "parts",
-        "Where the rest goes: the detour round others, speeding up and braking (ramps), and turning"
-        " on the spot (pivots), per trip, and as a share of Eq. (1). Single tasks in the paper’s"
-        " arena, where nobody else moves: nobody waits, nothing touches. Detours are less than"
+        "Where the rest goes: the detour round others; the launch, which is speeding up, braking"
+        " and the time that turning takes; and scrub of tyres that turn on the spot; per trip, and"
+        " as a share of Eq. (1). Single tasks in the paper’s arena, where"
+        " nobody else moves: nobody waits, nothing touches. Detours are less than"
         " nothing where robots stop short of sites that another one covers.",
         [
             Column("straight distance [m]"), Column("trips", ","), Column("Eq. (1) [J]", ".2f"),
@@ -156,7 +158,7 @@ def by_setting(trips: TripTable) -> Exhibit:
             found.bias, found.rmse, found.r2,
             ratio_interval(short["drained"], short.eq1, short["placement"]),
             ratio_interval(long["drained"], long.eq1, long["placement"]),
-            usable_from(some["straight"], some["drained"], some.eq1, TOLERANCE),
+            linearity(some).within_10,
             100.0 * float(some.part("detour").sum() / some.eq1.sum()),
             *fit(CORRECTED, some).coefficients,
             launch_cost(scenario_from(setting.scenario).robot),
@@ -165,16 +167,16 @@ def by_setting(trips: TripTable) -> Exhibit:
         "settings",
         "One thing different at a time: what a launch costs beyond Eq. (1) on the planned path,"
         " and what trips drain as a multiple of Eq. (1) on the straight line, where that is"
-        " shorter than 1 m and where it is 3.5 m or longer. Whiskers are 95 % intervals. The closed"
-        " form, (c₀·v − c₂·v³/3)/a for the ramps and 4/3·c₀·√(π/α) for a turn from any heading,"
-        " leaves out turns on the way.",
+        " shorter than 1 m and where it is 3.5 m or longer. Whiskers are 95 % intervals. Foreseen"
+        " is a straight drive on an empty floor that begins with a turn from any heading, without"
+        " the turns on the way.",
         [
             Column("setting"), Column("trips", ","), Column("no way [%]", ".1f"),
             Column("bias [J]", ".2f"), Column("RMSE [J]", ".2f"), Column("R²", ".3f"),
             Column("drained / Eq. (1), below 1 m", ".2f"),
             Column("drained / Eq. (1), from 3.5 m", ".2f"), Column("within 10 % from [m]", ".2f"),
             Column("detour [%]", ".1f"), Column("a launch [J]", ".2f"),
-            Column("in closed form [J]", ".2f"),
+            Column("foreseen [J]", ".2f"),
         ],
         rows,
         _settings(rows),
@@ -191,7 +193,7 @@ def _settings(rows: Sequence[Sequence[object]]) -> Figure:
     left, right = figure.subplots(1, 2, sharey=True)
     _whiskers(left, places, [row[10] for row in rows], SERIES[0], MARKERS[0])
     left.plot(
-        [row[11] for row in rows], places, "|", color=INK, ms=9.0, label="in closed form"
+        [row[11] for row in rows], places, "|", color=INK, ms=9.0, label="foreseen"
     )  # fmt: skip
     left.legend(loc="upper right")
     left.set_xlabel("a launch costs [J]")

@@ -13,7 +13,7 @@ from fleet.study.frame import Frame
 
 FloatArray = NDArray[np.float64]
 
-PARTS = ("detour", "ramps", "pivots", "waiting", "contact")
+PARTS = ("detour", "launch", "scrub", "waiting", "contact")
 """What a trip takes beyond Eq. (1) on the straight line."""
 
 

@@ -7,7 +7,13 @@ from math import inf, isnan, sqrt
 import numpy as np
 import pytest
 
-from fleet.experiments.energy.accuracy import accuracy, ratio_interval, resampled, usable_from
+from fleet.experiments.energy.accuracy import (
+    accuracy,
+    ratio_interval,
+    resampled,
+    usable_from,
+    worst_bin,
+)
 
 
 def test_accuracy_is_what_it_is_by_hand():
@@ -57,12 +63,18 @@ def test_one_placement_has_a_ratio_without_bounds():
 
 
 def test_usable_from_where_a_launch_no_longer_shows():
-    straight = np.linspace(0.05, 7.0, 40_000)
-    eq1 = 20.0 * straight
-    assert usable_from(straight, eq1 + 5.0, eq1, 0.1) == pytest.approx(2.25)
-    assert usable_from(straight, eq1, eq1, 0.1) == 0.0
-    assert usable_from(straight, 1.2 * eq1, eq1, 0.1) == inf
-    assert usable_from(straight, 0.8 * eq1, eq1, 0.1) == inf
+    assert usable_from(5.0, 20.0, 20.0, 0.1, to=7.0) == pytest.approx(2.25, abs=0.011)
+    assert usable_from(5.0, 20.0, 20.0, 0.1, to=2.0) == inf
+    assert usable_from(0.0, 20.0, 20.0, 0.1, to=7.0) == 0.0
+    assert usable_from(0.0, 24.0, 20.0, 0.1, to=7.0) == inf
+    assert usable_from(0.0, 16.0, 20.0, 0.1, to=7.0) == inf
+
+
+def test_the_worst_bin_is_that_whose_sum_is_off_most():
+    straight, drained = [0.1, 0.4, 0.6, 1.2], [1.0, 1.0, 10.0, 10.0]
+    assert worst_bin(straight, drained, [0.5, 1.5, 10.0, 10.0]) == 0.0
+    assert worst_bin(straight, drained, [1.0, 1.0, 8.0, 11.0]) == pytest.approx(0.2)
+    assert worst_bin(straight, drained, [1.0, 1.0, 10.0, 13.0]) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("groups", [5, 8, 20])
