@@ -15,7 +15,6 @@ extensions = [
 ]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
-myst_linkify_fuzzy_links = False
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
