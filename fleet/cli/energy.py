@@ -41,7 +41,7 @@ def _log_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOG]...")
 @click.option("--out", type=click.Path(path_type=Path), required=True,
               help="Folder for results and report. What is there is not run again.")  # fmt: skip
-@click.option("--quick", is_flag=True, help="A tenth of it.")
+@click.option("--quick", is_flag=True, help="A small part of it, on the open floor alone.")
 @click.option("--seed", type=click.IntRange(min=0), default=0,
               help="The first seed of placements and networks.  [0]")  # fmt: skip
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [all cores]")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from fleet.experiments.energy.energy_report import on_engine
 from fleet.experiments.energy.findings import details, findings, on_bids, on_closure, verdict
 from fleet.experiments.energy.lives import MEASURES, lives
-from fleet.experiments.energy.settings import HUSKIES
+from fleet.experiments.energy.settings import ENGINE, HUSKIES
 from fleet.experiments.energy.trip_table import TripTable
 
 
@@ -78,6 +81,29 @@ def test_where_a_robot_skids_no_line_holds(make_trips):
     said = verdict(findings(both, single, single, []))
     assert said.startswith("Energy is linear in the straight distance, but not proportional to it.")
     assert "(husky) it is neither linear in the straight distance nor proportional to it" in said
+
+
+def test_how_far_a_line_is_off_is_said_in_percent(make_trips):
+    trips = make_trips(launch=5.0)
+    found = findings(trips, trips, trips, [])
+    tolerable = replace(found.paper, line_off=0.07)
+    said = verdict(replace(found, paper=tolerable, skid=replace(found.paper, line_off=0.42)))
+    assert "is within 7 % at all lengths" in said
+    assert "the best line is off by up to 42 %" in said
+    said = verdict(replace(found, paper=replace(found.paper, line_off=0.12)))
+    assert said.startswith("Energy is neither linear in the straight distance nor proportional")
+
+
+def test_how_far_bodies_are_from_what_was_foreseen_is_said_in_percent(make_trips):
+    foreseen, driven = make_trips(100), make_trips(100)
+    driven.columns["setting"][:] = ENGINE.name
+    driven.columns["drained"][:50] *= 1.02
+    driven.columns["drained"][50:] *= 0.99
+    both = TripTable(
+        {name: np.concatenate([foreseen[name], driven[name]]) for name in foreseen.columns}
+    )
+    assert "within 1.500 % on average and 2.00 % at most, over 100 trips" in on_engine(both)
+    assert on_engine(foreseen) == ""
 
 
 def test_where_detours_are_everywhere_it_may_not_be_used_at_all(make_trips):
