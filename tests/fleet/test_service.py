@@ -88,3 +88,39 @@ def test_shares_and_costs_are_of_all_and_of_those_served():
     assert found.energy_drained_per_served == pytest.approx(10.0)
     assert found.energy_predicted_per_served == pytest.approx(4.0)
     assert found.messages_per_served == pytest.approx(2.0)
+
+
+def test_responses_are_of_those_served_and_in_time_if_not_later_than_the_deadline():
+    """Answered after 1, 2, ... 10 s; the deadline is 5 s; and one that nobody has answered."""
+    tasks = [task(100.0, 100.0, 100.0 + k, deadline=5.0) for k in range(1, 11)]
+    tasks.append(task(110.0, state=State.EXPIRED, closed=115.0, deadline=5.0))
+    found = figures(tasks, 200.0, tally=Tally(engaged=120.0), robots=4)
+    assert found.within_deadline == pytest.approx(5.0 / 11.0)
+    assert found.response_median == pytest.approx(5.5)
+    assert found.response_p90 == pytest.approx(9.1)
+    assert found.response_p99 == pytest.approx(9.91)
+    assert found.throughput == pytest.approx(10.0 / 200.0)
+    assert found.utilisation == pytest.approx(120.0 / (4 * 200.0))
+    assert found.lifetime_first == 110.0
+
+
+def test_a_miss_is_how_far_from_the_event_robots_were_sent():
+    missed = Task(
+        Event(0, (3.0, 4.0)),
+        (0.0, 0.0),
+        0.0,
+        state=State.SERVED,
+        taken=1.0,
+        reached=2.0,
+        closed=2.0,
+    )
+    assert figures([missed, task(0.0, 1.0, 2.0)], 5.0).miss_mean == pytest.approx(2.5)
+
+
+def test_of_nothing_nothing_is_told():
+    found = figures([], 0.5)
+    assert found.within_deadline is found.response_p90 is found.lifetime_first is None
+    assert found.throughput == found.backlog_mean == 0.0
+    half = figures([task(0.0, 0.25, 0.4)], 0.5)
+    assert half.throughput == pytest.approx(2.0)
+    assert half.backlog_mean == pytest.approx(0.5)

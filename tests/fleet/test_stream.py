@@ -2,58 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from math import fsum
-
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from played import Log, check_conservation, played, stream
 
 import fleet
 from fleet.assembly import prepare
-from fleet.observer import Observer
-from fleet.tasks import OPEN, State, Task, TaskBook
+from fleet.tasks import State, Task, TaskBook
 from protocols.messages import Event
-
-
-class Log(Observer):
-    """Keeps what was said and driven, by event."""
-
-    def __init__(self):
-        self.said, self.awards, self.trips = defaultdict(list), {}, []
-
-    def transmitted(self, excerpt):
-        self.said[excerpt.event] += zip(excerpt.transmissions, excerpt.heard, strict=True)
-
-    def awarded(self, event, award, time):
-        self.awards[event.id] = award
-
-    def trip_ended(self, event, trip):
-        self.trips.append((event.id, trip))
-
-
-def played(**keys):
-    """A run that is over, with its book."""
-    log = Log()
-    simulation = prepare(fleet.Scenario.of(**keys), [log])
-    return simulation, simulation.run(), log
-
-
-def stream(**keys):
-    return {"name": "stream", **keys}
-
-
-def check_conservation(simulation, summary):
-    book, raised = simulation.book, len(simulation.book.tasks)
-    assert raised == summary.events
-    assert raised == summary.served + summary.waiting + summary.expired + summary.lost
-    assert summary.lost == sum(summary.lost_by_reason.values())
-    assert all(task.reason for task in book.tasks if task.state is State.LOST)
-    assert book.open_tasks == book.count(*OPEN)
-    left = sum(robot.energy for robot in simulation.fleet.robots)
-    assert summary.energy_initial == pytest.approx(left + summary.energy_drained, abs=1e-9)
-    booked = fsum(summary.energy_by_account.values())
-    assert booked == pytest.approx(summary.energy_drained, abs=1e-9)
 
 
 def same_course(one, other):
@@ -305,102 +260,3 @@ def test_a_task_ends_once():
         book.close(task, State.LOST, 2.0, "twice")
     with pytest.raises(ValueError, match="task 1"):
         book.close(Task(Event(1, (0.0, 0.0)), (0.0, 0.0), 0.0), State.WAITING, 1.0)
-
-
-living = st.fixed_dictionaries(
-    {
-        "protocol": st.sampled_from(
-            ["rfta2", "rfta2ge", "gfgf2a", "gfgf1", "rfta1", "rfta2-iterated", "k-saap", "bfs",
-             "aap", "mia-ta", "face", "greedy", "optimum", "gfg", "rfta3"]
-        ),
-        "motion": st.sampled_from(["straight", "straight", "path", "physics"]),
-        "world": st.sampled_from(["random", "random-hole"]),
-        "robots": st.integers(2, 40),
-        "range": st.sampled_from([2.0, 4.0, 8.0]),
-        "connected": st.just(False),
-        "seed": st.integers(0, 2**31),
-        "robot": st.fixed_dictionaries({"capacity": st.sampled_from([20.0, 100.0, 500.0])}),
-        "time": st.one_of(
-            st.just("rounds"),
-            st.fixed_dictionaries(
-                {
-                    "name": st.just("stream"),
-                    "rate": st.sampled_from([0.1, 1.0, 5.0]),
-                    "duration": st.sampled_from([20.0, 80.0]),
-                    "service": st.sampled_from([0.0, 3.0]),
-                    "deadline": st.sampled_from([5.0, 1e9]),
-                }
-            ),
-        ),
-        "events": st.sampled_from(["uniform", "bursts", "hot-spots"]),
-        "radio": st.one_of(
-            st.just("ideal"),
-            st.fixed_dictionaries(
-                {
-                    "name": st.just("lossy"),
-                    "loss": st.sampled_from([0.0, 0.2, 0.7]),
-                    "shadowing": st.sampled_from([0.0, 6.0]),
-                    "retries": st.integers(0, 3),
-                    "beacon_interval": st.sampled_from([0.5, 3.0]),
-                }
-            ),
-        ),
-        "faults": st.fixed_dictionaries(
-            {
-                "motor_rate": st.sampled_from([0.0, 0.01]),
-                "robot_rate": st.sampled_from([0.0, 0.01]),
-                "blackouts": st.lists(
-                    st.fixed_dictionaries(
-                        {
-                            "start": st.floats(0.0, 50.0),
-                            "duration": st.floats(1.0, 40.0),
-                            "x": st.floats(0.0, 10.0),
-                            "y": st.floats(0.0, 10.0),
-                            "radius": st.floats(0.5, 8.0),
-                        }
-                    ),
-                    max_size=2,
-                ),
-            }
-        ),
-        "handler": st.sampled_from(["random", "nearest-known"]),
-        "sensors": st.one_of(
-            st.none(),
-            st.fixed_dictionaries(
-                {
-                    "radio_range": st.just(3.0),
-                    "miss": st.sampled_from([0.0, 0.5, 1.0]),
-                    "error": st.sampled_from([0.0, 2.0]),
-                    "duplicates": st.sampled_from([0.0, 0.5]),
-                }
-            ),
-        ),
-        "rounds": st.just(40),
-    }
-)  # fmt: skip
-
-
-def check_living(keys):
-    keys = {key: value for key, value in keys.items() if value is not None}
-    simulation, summary, log = played(**keys)
-    check_conservation(simulation, summary)
-    states = Counter(task.state for task in simulation.book.tasks)
-    assert states[State.SERVED] == summary.served
-    assert summary.served <= summary.events
-    for robot in simulation.fleet.robots:
-        assert 0.0 <= robot.energy <= robot.battery.capacity
-    drained = sum(trip.energy for _, trip in log.trips)
-    assert summary.energy_drained >= drained - 1e-6
-
-
-@given(living)
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_random_faults_at_random_protocols(keys):
-    check_living(keys)
-
-
-@pytest.mark.slow
-@given(living)
-@settings(max_examples=1500, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_a_thousand_random_faults_at_random_protocols(keys):
-    check_living(keys)

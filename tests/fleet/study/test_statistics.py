@@ -87,8 +87,8 @@ def test_paired_difference_is_decided_by_its_seed():
 @pytest.mark.filterwarnings("error")
 def test_pairs_that_do_not_differ_or_differ_all_alike():
     same = np.array([1.0, 2.0, 3.0])
-    assert paired_difference(same, same) == (0.0, 0.0, 0.0, 0.0, 3, 1.0)
-    assert paired_difference(same + 2.0, same) == (2.0, 2.0, 2.0, inf, 3)
+    assert paired_difference(same, same) == (0.0, 0.0, 0.0, 0.0, 3, 1.0, 0.0)
+    assert paired_difference(same + 2.0, same) == (2.0, 2.0, 2.0, inf, 3, 0.0, 0.0)
     assert paired_difference(same, same + 2.0).effect == -inf
     assert isnan(paired_difference([1.0], [0.0]).low)
     assert paired_difference([], []).pairs == 0
