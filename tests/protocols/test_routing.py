@@ -12,7 +12,15 @@ from hypothesis import strategies as st
 
 from protocols.geometry import crossing
 from protocols.messages import Event, Point
-from protocols.routing import WHOLE_FACE, Search, deliver, find, greedy, walk_face
+from protocols.routing import (
+    WHOLE_FACE,
+    Search,
+    _enters_before,
+    deliver,
+    find,
+    greedy,
+    walk_face,
+)
 
 # Placement of INET's MANET-protocols GPSR showcase (ManetprotocolsShowcaseA); y points down there.
 SHOWCASE = {
@@ -267,3 +275,22 @@ def test_a_walk_that_ran_into_its_middle_tries_the_other_hand():
         for hand in ("right", "left")
     }
     assert ends == {"right": 4, "left": 4}
+
+
+@pytest.mark.parametrize(
+    ("beside", "left", "before"),
+    [
+        ({2: (1.0, 0.2)}, True, True),  # closer to the site's direction than the edge ahead
+        ({2: (1.0, -0.7)}, True, False),  # farther off it, on the other side
+        ({2: (1.0, 0.2), 3: (-0.2, 1.0)}, True, True),  # clockwise from the edge comes 2,
+        ({2: (1.0, 0.2), 3: (-0.2, 1.0)}, False, False),  # and counterclockwise 3
+        ({}, True, False),  # nobody else
+    ],
+)
+def test_best_angle_enters_the_face_whose_next_edge_points_closer_to_the_site(beside, left, before):
+    """The edge ahead, to robot 1, is 31° off the direction of the site."""
+    robot = StillRobot(0, (0.0, 0.0), 100.0, {1: (1.0, 0.6), **beside})
+    search = Search(change="best-angle")
+    assert _enters_before(search, robot, 1, (5.0, 0.0), left) == before
+    assert _enters_before(Search(change="before"), robot, 1, (5.0, 0.0), left)
+    assert not _enters_before(Search(change="after"), robot, 1, (5.0, 0.0), left)

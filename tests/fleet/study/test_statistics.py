@@ -204,3 +204,29 @@ def test_runs_that_were_all_still_going_have_no_steps():
     found = survival([5, 5, 5], [False, False, False])
     assert len(found.times) == 0
     assert found.median == inf
+
+
+def test_less_confidence_is_a_narrower_interval():
+    shares, lives = [0.0, 1.0, 1.0, 0.0, 1.0], [1.0, 2.0, 3.0, 5.0, 8.0]
+    wide, narrow = (mean_interval(shares, (0.0, 1.0), confidence) for confidence in (0.95, 0.8))
+    assert wide.low < narrow.low < narrow.high < wide.high
+    assert narrow == wilson_interval(3, 5, 0.8)
+    wide, narrow = survival(lives), survival(lives, confidence=0.8)
+    assert (wide.low[:-1] < narrow.low[:-1]).all()
+    assert (narrow.high[:-1] < wide.high[:-1]).all()
+
+
+def test_no_chance_is_above_one_and_no_interval_is_made_up():
+    assert holm([0.8, 0.9]).tolist() == [1.0, 1.0]
+    assert all(isnan(bound) for bound in mean_interval([]))
+    assert all(isnan(bound) for bound in mean_interval([3.0])[1:])
+
+
+def test_twice_the_scatter_needs_four_times_the_pairs():
+    once, twice = pairs_needed(1.0, 0.1), pairs_needed(2.0, 0.1)
+    assert once == 787.0  # (1.959964 + 0.841621)² · 100 = 784.9, and two more
+    assert twice - 2.0 == pytest.approx(4.0 * (once - 2.0), abs=4.0)
+
+
+def test_a_lifetime_cut_off_at_the_horizon_is_as_long_as_it():
+    assert restricted([3.0, 10.0, 7.0], [True, False, True], 10.0).tolist() == [3.0, 10.0, 7.0]
