@@ -86,16 +86,18 @@ def scatter_through(
 
 def _room_lines(called: str, size: float, rooms: int, thickness: float, door: float) -> FloatArray:
     """Where rooms begin, their doors begin and end, and rooms end [m]."""
+    side = {"columns": "width", "rows": "height"}[called]
     if rooms < 1:
         raise ValueError(f"{called} is {rooms}; expected 1 or more")
     room = (size - (rooms - 1) * thickness) / rooms
     if not 0.0 < door < room:
         raise ValueError(
-            f"door is {door} m in rooms of {room:.3g} m; expected more than 0, and less than a room"
+            f"door is {door} m in rooms of {room:.3g} m, {called} = {rooms} over a {side} of"
+            f" {size:g} m; expected more than 0, and less than a room"
         )
     begin = np.arange(rooms)[:, None] * (room + thickness)
-    side = 0.5 * (room - door)
-    return np.asarray((begin + np.array([0.0, side, side + door, room])).ravel())
+    beside = 0.5 * (room - door)
+    return np.asarray((begin + np.array([0.0, beside, beside + door, room])).ravel())
 
 
 def _wall_and_door(rooms: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
