@@ -18,6 +18,7 @@ from worlds.ground import Ground
 from worlds.shapes import Corner, EventTable
 
 BLOCK = 256  # places and gaps drawn at a time
+MOST = 10_000  # hot spots of a run, or events of a burst
 BARREN = 1000  # so many blocks without a place: there is none
 
 
@@ -55,10 +56,10 @@ def hot_spots(
     share: float = 0.8,
 ) -> Iterator[Occurrence]:
     """A share of the events around a few places, normally spread [m]; the rest anywhere."""
-    if not (spots >= 1 and spread > 0.0 and 0.0 <= share <= 1.0):
+    if not (1 <= spots <= MOST and spread > 0.0 and 0.0 <= share <= 1.0):
         raise ValueError(
             f"hot spots: spots {spots}, spread {spread} m, share {share};"
-            f" expected at least 1, more than 0, and 0 to 1"
+            f" expected 1 to {MOST}, more than 0, and 0 to 1"
         )
     background = uniform_sites(ground, places)
     centres = [next(background) for _ in range(spots)]
@@ -81,10 +82,10 @@ def bursts(
     spread: float = 1.0,
 ) -> Iterator[Occurrence]:
     """Groups of events, geometric in number, close in time [s] and place [m]."""
-    if not (size >= 1.0 and spacing >= 0.0 and spread > 0.0):
+    if not (1.0 <= size <= MOST and spacing >= 0.0 and spread > 0.0):
         raise ValueError(
             f"bursts: size {size}, spacing {spacing} s, spread {spread} m;"
-            f" expected at least 1, at least 0, and more than 0"
+            f" expected 1 to {MOST}, at least 0, and more than 0"
         )
     background = uniform_sites(ground, places)
     last = 0.0

@@ -39,8 +39,8 @@ class BeaconSpec:
             raise ValueError(f"radio beacon_jitter is {self.beacon_jitter}; expected 0 to 1")
         if self.validity < self.beacon_interval:
             raise ValueError(
-                f"radio validity is {self.validity} s; expected the beacon interval,"
-                f" {self.beacon_interval} s, or more"
+                f"radio validity is {self.validity} s; expected beacon_interval,"
+                f" {self.beacon_interval:g} s, or more"
             )
 
     @property

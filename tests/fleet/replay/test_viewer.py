@@ -19,7 +19,7 @@ from .conftest import simulation
 
 pytestmark = pytest.mark.slow  # a viewer that draws in software takes its time
 
-REPLAY = {"World", "Event", "Decisions", "Auction"}
+REPLAY = {"Event", "Decisions", "Sequence chart"}
 LIFETIME = {
     "Energy of each robot, round by round", "Where robots went", "Robots by energy left [J]",
     "Energy of a robot [J]", "Energy of all trips so far [J]", "Messages an event", "Links",
@@ -35,6 +35,11 @@ def viewer():
         pytest.skip(f"the viewer does not start here: {reason}")
     with viewer:
         yield viewer
+
+
+def floor(viewer):
+    """The view of the floor, whose name says which run it is."""
+    return next(view.name for view in viewer.state().views if view.name.startswith("rfta2 · "))
 
 
 def painted(image, colour, tolerance=14):
@@ -54,14 +59,14 @@ def test_hops_calls_and_bids_are_seen_one_by_one(viewer, rounds):
     event, _ = Counter(sent.event for sent in face).most_common(1)[0]
     numbers = [sent.number for sent in face if sent.event == event]
     viewer.go("msg", sequence=numbers[0] - 1)
-    before = viewer.picture("World")
+    before = viewer.picture(floor(viewer))
     viewer.go("msg", sequence=numbers[-1] + 1)
-    after = viewer.picture("World")
+    after = viewer.picture(floor(viewer))
     orange, blue = (scheme.KIND_COLOURS[kind] for kind in ("route-face", "route-greedy"))
     assert painted(before, orange) < 20 < 100 < painted(after, orange)
     assert painted(after, blue) > 30
     viewer.go("msg", sequence=max(s.number for s in rounds.witness.said if s.event == event))
-    assert shows(viewer, REPLAY)
+    assert shows(viewer, REPLAY | {floor(viewer)})
     assert viewer.problems() == []
 
 
@@ -71,7 +76,7 @@ def test_a_mover_leaves_its_place_and_arrives(viewer, rounds):
     pictures = []
     for share in (0.3, 0.8):
         viewer.go("sim_time", duration=trip.departed + share * (trip.ended - trip.departed))
-        pictures.append(np.array(viewer.picture("World")).astype(int))
+        pictures.append(np.array(viewer.picture(floor(viewer))).astype(int))
     assert (np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum() > 100
     assert painted(pictures[1], scheme.WINNER_COLOUR) > painted(pictures[0], scheme.WINNER_COLOUR)
     assert viewer.problems() == []
@@ -102,11 +107,11 @@ def test_a_stream_with_losses(viewer, stream):
     viewer.open(stream.path)
     lost = next(sent for sent in stream.witness.said if not sent.heard)
     viewer.go("msg", sequence=lost.number + 1)
-    for tab in REPLAY - {"World"}:  # they may have been sent behind
+    for tab in REPLAY:  # they may have been sent behind
         viewer.front(tab)
     viewer.settle()
-    assert shows(viewer, REPLAY)
-    viewer.picture("World")
+    assert shows(viewer, REPLAY | {floor(viewer)})
+    viewer.picture(floor(viewer))
     assert viewer.problems() == []
 
 
@@ -179,7 +184,7 @@ def test_live_and_from_the_file_look_the_same(viewer, tmp_path):
     viewer.open(path)
     viewer.front("Event")  # a test before may have sent it behind
     viewer.go("round", sequence=6)
-    expected = [np.array(viewer.picture(name)) for name in ("World", "Event")]
+    expected = [np.array(viewer.picture(name)) for name in (floor(viewer), "Event")]
     live = RerunRecorder(None, key="live-again", properties={}, live=viewer.url, flush_rounds=1)
     simulation([live], rounds=8).run()
     deadline = time.monotonic() + 20.0
@@ -191,6 +196,6 @@ def test_live_and_from_the_file_look_the_same(viewer, tmp_path):
     viewer.front("Event")
     viewer.go("round", sequence=6)
     assert "live-again" in str(viewer.state().active_recording)
-    shown = [np.array(viewer.picture(name)) for name in ("World", "Event")]
+    shown = [np.array(viewer.picture(name)) for name in (floor(viewer), "Event")]
     for one, other in zip(shown, expected, strict=True):
         assert (np.abs(one.astype(int) - other) > 24).any(axis=2).mean() < 1e-3
