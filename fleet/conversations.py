@@ -131,9 +131,9 @@ class Conversations:
                 return
             heard = ()  # it would have said it, were it still there
         talk.said += 1
-        if talk.said > WORDS_PER_ROBOT * len(robots):
-            raise _endless(talk.task, transmission)
         try:
+            if talk.said > WORDS_PER_ROBOT * len(robots):
+                raise _endless(talk.task, transmission)
             self.radio.send(transmission, now, partial(self._sent, talk, transmission))
         except BrokenProtocol as broken:
             talk.words.throw(broken)  # to be raised where it was said

@@ -54,6 +54,18 @@ def limited(seconds):
         signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def compiled():
+    """Machine code is made once, outside of the time that an input is given."""
+    for keys in (["--motion", "path"], ["--motion", "physics", "--set", 'radio.name="csma"']):
+        done = CliRunner().invoke(main, ["run", "--rounds", "2", "--robots", "30", *keys])
+        assert done.exit_code in (0, 2), done.output
+    for radio in ("lossy", "csma"):
+        time = 'time={name="stream",duration=5.0}'
+        args = ["run", "--motion", "straight", "--set", f'radio.name="{radio}"', "--set", time]
+        assert CliRunner().invoke(main, args).exit_code == 0
+
+
 def finding(kind, seed, folder):
     """What is wrong with how the input of that kind and seed was met; nothing, as it should be."""
     made = nasty.draw(kind, seed)

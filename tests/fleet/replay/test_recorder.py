@@ -178,14 +178,16 @@ def test_a_recording_that_fails_says_so(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
-def test_a_full_disk_is_said_in_a_sentence():
+def test_a_full_disk_is_said_in_a_sentence(tmp_path):
+    full = tmp_path / "full.rrd"
+    full.symlink_to("/dev/full")
     done = subprocess.run(
-        [sys.executable, "-m", "fleet", "run", "--motion", "straight", "--rrd", "/dev/full"],
+        [sys.executable, "-m", "fleet", "run", "--motion", "straight", "--rrd", str(full)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 1
     assert done.stderr == (
-        "fleet: the recording /dev/full broke off: No space left on device (os error 28)\n"
+        f"fleet: the recording {full} broke off: No space left on device (os error 28)\n"
     )
 
 
@@ -272,7 +274,14 @@ def test_bodies_driven_by_the_engine(tmp_path):
 
 
 def test_the_planned_way_is_drawn_where_it_bends(tmp_path):
-    run = record(tmp_path / "run.rrd", motion="path", world="warehouse", rounds=20, seed=3)
+    run = record(
+        tmp_path / "run.rrd",
+        motion="path",
+        world="warehouse",
+        rounds=20,
+        seed=3,
+        robot={"capacity": 500.0},
+    )
     bent = straight = 0
     for event, trip, _ in run.witness.trips:
         under_way = 0.5 * (trip.departed + trip.ended)

@@ -120,8 +120,8 @@ def metric(robot, site):
     [
         ("fails", "fails in line 7 of later.py: KeyError: 0"),
         ("leaves", "fails in line 13 of later.py: SystemExit: 0"),
-        ("yields", "yields str 'hello'; expected a Transmission"),
-        ("returns", "returns str 'me'; expected an Award at its end"),
+        ("yields", "yields 'hello'; expected a Transmission"),
+        ("returns", "ends with 'me'; expected an Award"),
         ("hangs", "of later.py: it does not come to an end within"),
     ],
 )

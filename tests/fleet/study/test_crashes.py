@@ -154,7 +154,9 @@ def test_a_full_disk_is_said_and_the_study_goes_on_when_there_is_room(
 
 def test_a_full_disk_leaves_the_table_that_was_there(tmp_path, make_tasks, monkeypatch):
     result = run_jobs(make_tasks(3), tmp_path / "out", workers=1)
-    before = (tmp_path / "out" / "runs.parquet").read_bytes()
+    table = tmp_path / "out" / "runs.parquet"
+    table.write_bytes(b"of another ledger")  # so that it must be made again
+    before = table.read_bytes()
     script = (
         "import resource, sys; from fleet.study import StudyResult\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
