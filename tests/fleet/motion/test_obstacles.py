@@ -19,7 +19,7 @@ SMALL = replace(PRESETS["small"], capacity=1e4)
 BIG = replace(SMALL, radius=0.2)
 JAMMED = pytest.mark.xfail(
     strict=True,
-    reason="robots as wide as half a door get stuck in dense traffic: no margin is left",
+    reason="robots half as wide as a door get stuck in dense traffic",
 )
 
 

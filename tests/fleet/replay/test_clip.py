@@ -39,9 +39,7 @@ def test_rounds_follow_each_other(rounds):
     assert together == [*apart[0][:-1], *apart[1][:-1], *apart[2]]
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a clip of a stream leaves out most of a second of one drive"
-)
+@pytest.mark.xfail(strict=True, reason="a clip of a stream skips most of a second of a drive")
 def test_while_robots_drive_others_talk(stream):
     """Where both go on at once, neither a transmission nor a moment of driving is left out."""
     found = frames_of(stream, {"round": 2}, {"round": 12})
