@@ -247,7 +247,8 @@ class RerunRecorder(Observer):
     @override
     def relocated(self, event: Event, trip: Trip) -> None:
         """Note the trip, and what batteries hold now."""
-        self._note_trip(event, trip._replace(outcome=RELOCATED))  # type: ignore[arg-type]
+        noted = trip._replace(outcome=RELOCATED)  # type: ignore[arg-type]  # the journal's own
+        self._note_trip(event, noted)
 
     @override
     def trip_ended(self, event: Event, trip: Trip) -> None:

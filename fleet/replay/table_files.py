@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
 from fleet.replay import scheme
 from fleet.replay.readback import Recording, sound
@@ -67,7 +70,7 @@ def poses(recording: Recording) -> pa.Table:
     return pa.table(columns)
 
 
-def _flat(rows: list, kind: type) -> np.ndarray:  # type: ignore[type-arg]
+def _flat(rows: Sequence[Any], kind: type[np.generic]) -> NDArray[Any]:
     return np.concatenate([np.empty(0, kind), *(np.asarray(row, kind) for row in rows)])
 
 
