@@ -81,10 +81,8 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
     motion = make_motion(
         scenario.motion, scenario.robot, world.arena, audience.sample_interval, random["builds"]
     )
-    solid = look_up("motion", scenario.motion.name, "motion").solid
-    ground = ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
-    advised = advice(scenario, world.arena)
-    for said in filter(None, (*world.notices, ground.notice(), *advised)):
+    ground = ground_for(scenario, world)
+    for said in remarks(scenario, world, ground):
         audience.noticed(said)
     points = start(world, ground, scenario, random["placement"], audience.placement_tried)
     agenda = Agenda()
@@ -120,6 +118,24 @@ def prepare(scenario: Scenario, observers: Sequence[Observer] = ()) -> Simulatio
         make_schedule(scenario, ground, len(robots), random, audience.noticed),
         audience,
     )
+
+
+def ground_for(scenario: Scenario, world: World) -> Ground:
+    """Where the scenario's robots can be; those without a body are points.
+
+    Raises:
+        ImpossibleWorld: there is no room for them.
+    """
+    solid = look_up("motion", scenario.motion.name, "motion").solid
+    return ground_of(world.arena, scenario.robot.radius if solid else 0.0, world.start)
+
+
+def remarks(scenario: Scenario, world: World, ground: Ground) -> Iterator[str]:
+    """What the author of a scenario may not have meant, or known: a sentence each."""
+    yield from world.notices
+    if said := ground.notice():
+        yield said
+    yield from advice(scenario, world.arena)
 
 
 def make_schedule(

@@ -22,6 +22,7 @@ ROOM = 0.001  # [m] that a body needs on each side of a way through
 JOIN = 16  # chords of a quarter circle around a corner, in the eroded floor
 ROUND = 1.0 / cos(pi / (4 * JOIN))  # chords lie inside their circle: by so much more is eroded
 MENDED = 2.0 * ROOM  # [m] by which the area is taken larger again, so that it touches what it may
+geos = np.errstate(all="ignore")  # on some processors it leaves flags behind that mean nothing
 WORTH_SAYING = 0.05  # share of the area taken from which on another one is mentioned
 
 
@@ -40,6 +41,7 @@ class Ground:
     _obstacles: Any = None  # prepared geometry
     _reach: Any = None  # where centres may be, prepared; None: anywhere
 
+    @geos
     def holds(self, points: FloatArray) -> NDArray[np.bool_]:
         """Which of ``points`` (k, 2) [m] a robot can stand on, and get to (k,)."""
         if self._reach is None:
@@ -52,6 +54,7 @@ class Ground:
         held[held] = ~shapely.dwithin(self._obstacles, shapely.points(points[held]), self.radius)
         return held
 
+    @geos
     def buried(self, points: FloatArray) -> NDArray[np.bool_]:
         """Which of ``points`` (k, 2) [m] lie in obstacles (k,)."""
         if self._obstacles is None:
@@ -60,6 +63,7 @@ class Ground:
 
         return np.asarray(shapely.intersects_xy(self._obstacles, *points.T))
 
+    @geos
     def serves(self, points: FloatArray) -> NDArray[np.bool_]:
         """Which of ``points`` (k, 2) [m] a robot can stand on, or cover with its body (k,)."""
         if self._reach is None:
@@ -89,6 +93,7 @@ class Ground:
 
 
 @lru_cache(8)
+@geos
 def ground_of(arena: Arena, radius: float, start: Corner | None = None) -> Ground:
     """The ground of robots of ``radius`` [m]; ``start`` [m] picks the area.
 

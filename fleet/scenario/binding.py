@@ -12,7 +12,7 @@ from math import inf, isnan
 from types import MappingProxyType, NoneType
 from typing import Any, TypeVar, get_args, get_origin
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 from fleet.catalogue import look_up
 from fleet.scenario.delimited import numbers
@@ -21,10 +21,12 @@ from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.model import Scenario
 from fleet.scenario.plugins import load_object, looks_like_file
 from protocols.metrics import Metric
+from protocols.routing import Search
 from worlds.occupancy import OccupancyGrid
 from worlds.shapes import EventTable, LinkTable, PlaceTable
 
 T = TypeVar("T")
+WELL_KNOWN = {"search": Search, "metric": Metric}  # the parameters that all protocols share
 MOST = 1e12  # of any number: nothing of a fleet is larger, and its square is still a number
 
 
@@ -62,9 +64,16 @@ def bind(
 
 @cache
 def keywords(function: Callable[..., Any]) -> dict[str, Any]:
-    """The parameters that a table may set, with their types."""
+    """The parameters that a table may set, with their types.
+
+    One whose type is not given takes what a file can hold; ``search`` and ``metric`` are ours.
+    """
     parameters = inspect.signature(function, eval_str=True).parameters.values()
-    return {p.name: p.annotation for p in parameters if p.kind is p.KEYWORD_ONLY}
+    return {
+        p.name: WELL_KNOWN.get(p.name, Any) if p.annotation is p.empty else p.annotation
+        for p in parameters
+        if p.kind is p.KEYWORD_ONLY
+    }
 
 
 @cache
@@ -90,6 +99,9 @@ def convert(kind: Any, value: Any, key: str) -> Any:
     if not problems:
         try:
             return adapter(kind).validate_json(json.dumps(value), strict=True)
+        except PydanticUserError as error:  # a type of the user's
+            named = shown(getattr(kind, "__name__", kind))
+            raise bad(key, f"is to be of type {named}, which no file can hold") from error
         except ValidationError as error:
             problems = [
                 (

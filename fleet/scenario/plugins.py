@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import module_from_spec, spec_from_file_location
+from inspect import signature
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -30,8 +31,8 @@ def load_object(reference: str, key: str) -> Any:
     Modules beside the file can be imported in it by their names.
 
     Raises:
-        BadInput: the file, or the object in it, is not there, or the file does not import;
-            the sentence says which and why.
+        BadInput: the file, or the object in it, is not there, or the file does not import, or
+            names types that are nowhere; the sentence says which and why.
     """
     path, name = _split(reference, key)
     module = _imported(path, key).module
@@ -43,6 +44,11 @@ def load_object(reference: str, key: str) -> Any:
     found = getattr(module, name)
     if not callable(found):
         raise bad(key, f"{shown(reference)} is of type {type(found).__name__}; expected a function")
+    try:
+        signature(found, eval_str=True)  # annotations may be any code
+    except Exception as error:
+        said = f"the parameters of {shown(reference)} cannot be read: {what(error)}"
+        raise bad(key, said) from error
     return found
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from fleet.study.design import Study
 from fleet.study.ledger import NAME, reading
 from fleet.study.local import LIMIT
+from fleet.study.remarks import study_remarks
 from fleet.study.result import StudyResult
 from fleet.study.runner import Progress, Say, run_jobs, silent
 from fleet.study.study_file import load_study, study_from
@@ -45,6 +46,8 @@ def sweep(
     """
     described, goal = described_by(study), target(until) if until else None
     source = _source(study)
+    for said in study_remarks(described):
+        say(said)
     if goal is not None and (Path(out) / NAME).is_file():
         with reading(Path(out)) as ledger:
             described = with_seeds(described, seeds_there(ledger.meta(), described))

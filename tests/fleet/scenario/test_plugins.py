@@ -169,3 +169,44 @@ def test_time_in_a_library_that_is_imported_does_not_count(tmp_path, monkeypatch
     home.mkdir()
     (home / "own.py").write_text("from slow_library import x\n\ndef mine():\n    return x\n")
     assert load_object(f"{home / 'own.py'}:mine", "protocol")() == 1
+
+
+UNTYPED = """
+from protocols.auctions import AuctionRules, auction
+from protocols.routing import find
+
+class Own:
+    pass
+
+def mine(view, event, source, *, search, metric, share=0.5, own: Own = None):
+    assert share in (0.5, "much")
+    found = yield from find(view, source, event, search)
+    return (yield from auction(view, found, event, metric, AuctionRules()))
+
+def typed(view, event, source, *, own: "Nowhere" = None):
+    yield from ()
+"""
+
+
+def test_parameters_without_types_take_what_a_file_holds(tmp_path):
+    """And ``search`` and ``metric`` are what they are in all protocols."""
+    (tmp_path / "own.py").write_text(UNTYPED)
+    table = {"name": f"{tmp_path / 'own.py'}:mine", "metric": "energy-left", "share": "much"}
+    own = fleet.run(fleet.Scenario.of(protocol=table, motion="straight", rounds=5))
+    ours = fleet.run(fleet.Scenario.of(protocol="rfta2", motion="straight", rounds=5))
+    assert (own.messages, own.energy_drained) == (ours.messages, ours.energy_drained)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("mine", "protocol.own: is to be of type 'Own', which no file can hold"),
+        ("typed", "cannot be read: NameError: name 'Nowhere' is not defined"),
+    ],
+)
+def test_types_that_no_file_can_hold_are_one_sentence(tmp_path, name, said):
+    (tmp_path / "own.py").write_text(UNTYPED)
+    table = {"name": f"{tmp_path / 'own.py'}:{name}", "metric": "energy-left", "own": 3}
+    with pytest.raises(BadInput) as refusal:
+        fleet.run(fleet.Scenario.of(protocol=table, motion="straight", rounds=5))
+    assert said in str(refusal.value)
