@@ -10,6 +10,7 @@ from typing import Any
 
 from fleet.catalogue import CATALOGUES
 from fleet.scenario.binding import columns_of
+from fleet.scenario.reading import is_file
 from worlds.occupancy import OccupancyGrid
 
 OBJECTS = ("protocol", "protocol.name", "protocol.metric", "protocol.metric.name")
@@ -46,7 +47,7 @@ def anchored(value: Any, folder: Path, key: str = "") -> Any:
         }
     if isinstance(value, list):
         return [anchored(item, folder, key) for item in value]
-    if isinstance(value, str) and _is_path(value, key):
+    if isinstance(value, str) and (_is_path(value, key) or _is_users(value, key, folder)):
         return value if value.startswith("~") else str(folder / value)
     return value
 
@@ -56,3 +57,11 @@ def _is_path(value: str, key: str) -> bool:
     if key in ROBOTS:
         return value.endswith(".toml")
     return key in path_keys() or (key in OBJECTS and ".py" in value)
+
+
+def _is_users(value: str, key: str, folder: Path) -> bool:
+    """Whether it is a file for a protocol or metric of the user's, who alone knows that it is.
+
+    One that is not there yet cannot be told from other text.
+    """
+    return key.startswith("protocol.") and "." in value and is_file(folder / value)

@@ -75,6 +75,23 @@ def test_paths_are_relative_to_the_file_that_names_them(folders, monkeypatch, tm
         load_scenario(None, {"protocol": "mine.py:mine"})  # an option's: from where we are
 
 
+def test_a_file_that_a_users_protocol_is_given_is_beside_the_scenario_too(tmp_path):
+    (tmp_path / "weights.dat").write_text("1 2 3\n")
+    (tmp_path / "mine.py").write_text(
+        "from pathlib import Path\n"
+        "from protocols.messages import Award\n"
+        "def mine(view, event, source, *, weights, mood):\n"
+        "    assert mood == 'v1.0' and Path(weights).read_text() == '1 2 3\\n'\n"
+        "    yield from ()\n"
+        "    return Award(source, source)\n"
+    )
+    (tmp_path / "one.toml").write_text(
+        '[protocol]\nname = "mine.py:mine"\nweights = "weights.dat"\nmood = "v1.0"\n'
+    )
+    parameters = load_scenario(tmp_path / "one.toml").protocol.parameters
+    assert parameters == {"weights": str(tmp_path / "weights.dat"), "mood": "v1.0"}
+
+
 LATER = """\
 from protocols.messages import Award
 
