@@ -69,7 +69,6 @@ def write_report(folder: Path, out: Path | None = None) -> Path:
     """
     page = (out or folder) / "report.html"
     try:
-        page.parent.mkdir(parents=True, exist_ok=True)
         return _write(folder, page)
     except OSError as error:
         said = f"{str(error.filename or page)!r} cannot be written: {error.strerror or error}"
@@ -85,7 +84,7 @@ def _write(folder: Path, path: Path) -> Path:
         robots = _robots(ledger)
     _bring_up_to_date(folder)
     beside = path.parent / "report"
-    beside.mkdir(exist_ok=True)
+    beside.mkdir(parents=True, exist_ok=True)
     study = meta.get("study", {})
     sections = list(_sections(runs, robots, study.get("report", {}), beside)) if len(runs) else []
     return write_page(

@@ -290,6 +290,10 @@ def test_the_command_refuses_a_folder_without_a_study(tmp_path):
     done = CliRunner().invoke(main, ["report", str(tmp_path)])
     assert done.exit_code == 2
     assert "holds no study" in done.stderr
+    missing = tmp_path / "missing"
+    done = CliRunner().invoke(main, ["report", str(missing)])
+    assert (done.exit_code, "holds no study" in done.stderr) == (2, True)
+    assert not missing.exists()  # only who finds something writes
 
 
 STREAMS = {
