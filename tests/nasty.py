@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from inspect import signature
 from pathlib import Path
 from typing import Any
+
+from garbling import Input, garbled
+from nasty_logs import recorded_log, robot_file
 
 from fleet.catalogue import takers
 from fleet.scenario.binding import field_types, keywords
@@ -45,15 +47,6 @@ NASTY = (*NUMBERS, *TEXTS, *OTHERS)
 
 BIG = {"robots", "rounds", "time.duration", "time.rate", "time.offers", "sensors.count"}
 """Keys whose large values mean long work, and not a hang."""
-
-
-@dataclass
-class Input:
-    """A command, the files it reads, and the keys that were tampered with."""
-
-    arguments: list[str]
-    files: dict[str, bytes] = field(default_factory=dict)
-    touched: list[tuple[str, str]] = field(default_factory=list)  # and what they were set to
 
 
 def literal(rng: random.Random, key: str, default: Any = None) -> str:
@@ -133,33 +126,6 @@ def as_file(rng: random.Random, chosen: dict[str, str]) -> str:
     for table, lines in tables.items():
         top += [f"[{table}]", *lines]
     return "\n".join(top) + "\n"
-
-
-def garbled(rng: random.Random, content: bytes) -> bytes:
-    """Content with something done to it that happens to files."""
-    what = rng.randrange(10)
-    at, to = sorted((rng.randrange(len(content) + 1), rng.randrange(len(content) + 1)))
-    if what == 0:
-        return b"\xef\xbb\xbf" + content
-    if what == 1:
-        return content.replace(b"\n", b"\r\n")
-    if what == 2:
-        return content.decode("utf-8", "replace").encode("utf-16")
-    if what == 3:
-        return content[:at] + content[to:]
-    if what == 4:
-        return content[:at] + content[at:to] * 2 + content[to:]
-    if what == 5:
-        return content[:at] + rng.randbytes(rng.randrange(1, 9)) + content[at:]
-    if what == 6:
-        return content[:at]
-    if what == 7:
-        return content[:at] + rng.choice(b"[]{}=\"'#.,;\n\t\\\x00").to_bytes() + content[at:]
-    if what == 8:
-        return b"" if rng.random() < 0.5 else content * 50
-    lines = content.split(b"\n")
-    rng.shuffle(lines)
-    return b"\n".join(lines)
 
 
 def scenario(rng: random.Random) -> Input:
@@ -375,6 +341,8 @@ KINDS = {
     "table": table,
     "map": floor_map,
     "protocol": own_protocol,
+    "log": recorded_log,
+    "robot": robot_file,
 }
 
 
