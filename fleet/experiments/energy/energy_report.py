@@ -19,9 +19,8 @@ from fleet.experiments.energy.lives import lives
 from fleet.experiments.energy.models import CORRECTED, LINE, fit
 from fleet.experiments.energy.settings import ENGINE, NO_INERTIA, PAPER
 from fleet.experiments.energy.trip_table import TripTable
-from fleet.study.atomic import write_text
 from fleet.study.report.page import write_page
-from fleet.study.report.style import in_style, inline, svg_of
+from fleet.study.report.style import in_style, saved
 from fleet.study.version import environment
 
 TITLES = {
@@ -120,7 +119,4 @@ def _saved(exhibit: Exhibit, folder: Path) -> Any:
     exhibit.write_csv(folder)
     if exhibit.figure is None:
         return ""
-    exhibit.figure.savefig(folder / f"{exhibit.name}.png", dpi=200)
-    svg = svg_of(exhibit.figure)
-    write_text(folder / f"{exhibit.name}.svg", svg)
-    return inline(svg)
+    return saved(exhibit.figure, folder, exhibit.name)

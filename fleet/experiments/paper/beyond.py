@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-import matplotlib as mpl
 import numpy as np
 
 from fleet.experiments.paper.campaign_runs import Results
-from fleet.experiments.paper.cases import SEEDS
+from fleet.experiments.paper.cases import first_seed
 from fleet.experiments.paper.paper_figures import (
     LIFETIME,
     MESSAGES,
     NAMES,
-    STYLE,
     WORLDS,
     Numbered,
     by_protocol,
@@ -43,7 +41,8 @@ class Outreach(NamedTuple):
 def typical_bounds(world: str) -> Bounds:
     """The mean bounds of a few of the campaign's networks."""
     found = [
-        bounds(Scenario.of(world=world, range=2.5, seed=2 * SEEDS + k)) for k in range(NETWORKS)
+        bounds(Scenario.of(world=world, range=2.5, seed=first_seed(2.5) + k))
+        for k in range(NETWORKS)
     ]
     nearest, foresight = np.mean(found, axis=0).tolist()
     return Bounds(nearest, foresight)
@@ -70,16 +69,15 @@ def reaches(runs: Results, limits: Bounds) -> Iterator[Outreach]:
 
 
 def draw_beyond(results: Results) -> Iterator[Numbered]:
-    """Figures 18 and 19: they go on where the paper's end."""
-    with mpl.rc_context(STYLE):
-        yield Numbered(
-            18, "Network lifetime at 2SR: RFTA3, the paper’s algorithms, and the all-knowing",
-            by_protocol(results, PROTOCOLS, LIFETIME),
-        )  # fmt: skip
-        yield Numbered(
-            19, "Communication costs at 2SR: RFTA3 and the paper’s algorithms",
-            by_protocol(results, PROTOCOLS[:-1], MESSAGES),
-        )  # fmt: skip
+    """Figures 18 and 19: they go on where the paper's end. To be drawn in the style of reports."""
+    yield by_protocol(
+        18, "Network lifetime at 2SR: RFTA3, the paper’s algorithms, and the all-knowing", results,
+        PROTOCOLS, LIFETIME,
+    )  # fmt: skip
+    yield by_protocol(
+        19, "Communication costs at 2SR: RFTA3 and the paper’s algorithms", results,
+        PROTOCOLS[:-1], MESSAGES,
+    )  # fmt: skip
 
 
 def lines(found: Sequence[Outreach]) -> list[list[str]]:
@@ -105,7 +103,7 @@ HEADER = (
     "messages a round",
     "of the all-knowing",
     "of the energy at the nearest robot’s distance",
-    "of perfect foresight",
+    "of perfect foresight, all batteries as one",
 )
 TITLES = {world: f"Beyond the paper: {title[4:]}" for world, title in WORLDS.items()}
 

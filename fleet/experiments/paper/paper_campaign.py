@@ -7,16 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from fleet.experiments.paper.campaign_runs import Results
-from fleet.experiments.paper.cases import NETWORKS, cases
+from fleet.experiments.paper.cases import NETWORKS, cases, growth_cases
 from fleet.experiments.paper.paper_report import write_report
 from fleet.study.job import Job
 from fleet.study.result import StudyResult
 from fleet.study.runner import Progress, Say, run_jobs, silent
 
 COLUMNS = (
-    "series", "motion", "world", "radio_range", "search_radius", "seed", "lifetime", "events",
-    "messages", "messages_per_robot", "energy_left_mean", "energy_left_min",
-    "reactions_per_robot", "distance_per_robot", "closest_found",
+    "series", "reading", "motion", "world", "robots", "radio_range", "search_radius", "seed",
+    "lifetime", "events", "messages", "messages_per_robot", "hops_greedy", "hops_face",
+    "energy_left_mean", "energy_left_min", "reactions_per_robot", "distance_per_robot",
+    "closest_found",
 )  # fmt: skip
 
 
@@ -47,16 +48,16 @@ def paper_campaign(
 
 
 def tasks(networks: int, motions: Iterable[str]) -> list[Job]:
-    """The campaign's runs, labelled by the series that they belong to."""
+    """The campaign's runs, labelled by their series and their reading."""
+    planned = [case for motion in motions for case in cases(networks, motion)]
     return [
         Job.of(
             scenario,
-            cell=f"{name}, {motion}, {scenario['world']}, range {scenario['range']},"
-            f" search radius {scenario['search_radius']}",
-            labels={"series": name},
+            cell=f"{name} ({reading}), {scenario['motion']}, {scenario['world']},"
+            f" range {scenario['range']:.3g}, search radius {scenario['search_radius']:.3g}",
+            labels={"series": name, "reading": reading},
         )
-        for motion in motions
-        for name, scenario in cases(networks, motion)
+        for name, reading, scenario in [*planned, *growth_cases(networks)]
     ]
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,61 +14,65 @@ from fleet.assembly import prepare
 from fleet.experiments.paper import beyond
 from fleet.experiments.paper.campaign_runs import Results
 from fleet.experiments.paper.claims import Claim, claims
-from fleet.experiments.paper.paper_figures import NAMES, Numbered, draw_all
-from fleet.experiments.paper.printed_tables import Comparison, compare
-from fleet.experiments.paper.published import MeanSd
+from fleet.experiments.paper.complexity import Growth, growths
+from fleet.experiments.paper.paper_figures import Numbered, draw_all, draw_further
+from fleet.experiments.paper.readings import ANY, CHECKS, COUNTS, DEFAULT, STOPS
+from fleet.experiments.paper.resampling import GUARDED
+from fleet.experiments.paper.sample import Sample
+from fleet.experiments.paper.side_by_side import ReadingColumn, columns, counts, fits, matrix, table
 from fleet.experiments.paper.theory import theory_claims
+from fleet.experiments.paper.verdicts import TOLERANCES
 from fleet.scenario.model import Scenario
-from fleet.study.atomic import write_text
 from fleet.study.report.csv_files import write_csv
 from fleet.study.report.page import write_page
+from fleet.study.report.style import in_style, saved
+from fleet.study.statistics import Interval
 
-TITLES = {
-    "random": "Table 2: after the final round, random topology",
-    "random-hole": "Table 3: after the final round, random topology with hole",
+TABLES = {
+    "random": (2, "Table 2: after the final round, random topology"),
+    "random-hole": (3, "Table 3: after the final round, random topology with hole"),
 }
 
 
 def write_report(out: Path, results: Results, command: str) -> Path:
-    """Figures (PNG, SVG), tables and claims (CSV), and ``report.html`` with all of them.
+    """Figures (PNG, SVG, CSV), tables and claims (CSV), and ``report.html`` with all of them.
 
     ``results`` holds the runs of one or both motions; the straight ones are the paper's.
     Returns the page's path.
     """
+    out.mkdir(parents=True, exist_ok=True)
     motions = [m for m in ("straight", "physics") if len(results.where(motion=m))]
-    figures = out / "figures"
-    figures.mkdir(parents=True, exist_ok=True)
-    drawn: list[dict[str, Any]] = []
-    further: list[dict[str, Any]] = []
-    for motion in motions:
-        label = "" if motion == "straight" else " Physics motion."
-        runs = results.where(motion=motion)
-        numbered = draw_all(runs, energies_left(motion))
-        drawn.extend(_saved(figure, figures, motion, label) for figure in numbered)
-        further.extend(
-            _saved(figure, figures, motion, label) for figure in beyond.draw_beyond(runs)
-        )
     paper = results.where(motion=motions[0])
-    listed = [*theory_claims(), *claims(paper)]
-    tables = [_table(results, world, motions) for world in TITLES]
-    said = [[c.where, c.says, c.measured, c.verdict, c.rule] for c in listed]
-    write_csv(out / "claims.csv", ["where", "says", "measured", "verdict", "holds if"], said)
-    for number, table in zip((2, 3), tables, strict=True):
-        lines = [[r["name"], r["protocol"], r["paper"], *r["cells"]] for r in table["rows"]]
-        write_csv(out / f"table-{number}.csv", ["row", "protocol", "paper", *motions], lines)
+    side = columns(paper)
+    physics = [Sample.of(results.where(motion=m)) for m in motions[1:]]
+    listed = [*theory_claims(), *claims(side[0].sample)]
+    grown = growths(paper)
+    tables = [
+        table(number, title, world, side, physics) for world, (number, title) in TABLES.items()
+    ]
     reached = _beyond(results, motions)
-    for table in reached:
-        write_csv(out / f"{table['stem']}.csv", beyond.HEADER, table["lines"])
+    _write_tables(out, listed, side, tables, grown, reached)
+    drawn, further = _draw(out / "figures", results, motions)
     return write_page(
         out / "report.html",
         "paper.html.j2",
         "fleet.experiments.paper",
-        lead=_lead(listed, paper),
-        provenance=_provenance(results, motions),
+        lead=_lead(listed, side[0]),
+        provenance=_provenance(results, motions, side),
         command=command,
         version=__version__,
         tables=tables,
+        tolerances=TOLERANCES,
+        guarded=f"{100.0 * GUARDED:g} %",
         claims=listed,
+        side=side,
+        stops=STOPS,
+        checks=CHECKS,
+        ways=COUNTS,
+        counts=counts(side),
+        matrix=matrix(side),
+        fits=fits(side),
+        growths=[_growth_cells(growth) for growth in grown],
         figures=drawn,
         beyond=reached,
         further=further,
@@ -86,54 +89,90 @@ def energies_left(motion: str) -> dict[str, NDArray[np.float64]]:
     return left
 
 
-def _saved(numbered: Numbered, folder: Path, motion: str, label: str) -> dict[str, Any]:
+def _draw(
+    folder: Path, results: Results, motions: Sequence[str]
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """The figures of the paper, and those that go beyond it, as the page has them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn: list[dict[str, Any]] = []
+    further: list[dict[str, Any]] = []
+    with in_style("paper"):
+        for motion in motions:
+            runs = results.where(motion=motion)
+            drawn += [_shown(f, folder, motion) for f in draw_all(runs, energies_left(motion))]
+            further += [_shown(f, folder, motion) for f in beyond.draw_beyond(_default(runs))]
+            if motion == "straight":
+                drawn += [_shown(figure, folder, motion) for figure in draw_further(runs)]
+    return drawn, further
+
+
+def _shown(numbered: Numbered, folder: Path, motion: str) -> dict[str, Any]:
+    """Write the files of a figure; what the page says of it."""
     stem = f"figure-{numbered.number:02d}" + ("" if motion == "straight" else f"-{motion}")
-    numbered.figure.savefig(folder / f"{stem}.png", dpi=200)
-    text = io.StringIO()
-    numbered.figure.savefig(text, format="svg", metadata={"Date": None})
-    svg = text.getvalue()
-    write_text(folder / f"{stem}.svg", svg)
+    write_csv(folder / f"{stem}.csv", numbered.head, numbered.rows)
     return {
         "number": numbered.number,
         "caption": numbered.caption,
-        "motion": label,
-        "svg": svg[svg.index("<svg") :],
+        "motion": "" if motion == "straight" else " Physics motion.",
+        "printed": numbered.printed,
+        "stem": f"figures/{stem}",
+        "svg": saved(numbered.figure, folder, stem),
     }
 
 
-def _table(results: Results, world: str, motions: Sequence[str]) -> dict[str, Any]:
-    compared = [compare(results.where(motion=motion), world) for motion in motions]
-    rows, notes = [], []
-    last = ""
-    for cells in zip(*compared, strict=True):
-        first = cells[0]
-        unit = f" [{first.row.unit}]" if first.row.unit else ""
-        name = first.row.name + unit
-        rows.append(
-            {
-                "name": "" if name == last else name,
-                "protocol": NAMES[first.protocol],
-                "paper": _printed(first.paper) + ("*" if first.impossible else ""),
-                "cells": [_measured(cell) for cell in cells],
-            }
-        )
-        last = name
-        if first.impossible:
-            notes.append(f"* {first.impossible}.")
-    notes += [_ge_note(results.where(motion=motion, world=world), motion) for motion in motions]
-    return {"title": TITLES[world], "columns": list(motions), "rows": rows, "notes": notes}
+def _default(runs: Results) -> Results:
+    return runs.where(reading=str(DEFAULT)).with_rows_of(runs.where(reading=ANY))
+
+
+def _write_tables(
+    out: Path,
+    listed: Sequence[Claim],
+    side: Sequence[ReadingColumn],
+    tables: Sequence[dict[str, Any]],
+    grown: Sequence[Growth],
+    reached: Sequence[dict[str, Any]],
+) -> None:
+    """What the page says, as CSV files beside it."""
+    write_csv(
+        out / "claims.csv",
+        ["reading", "where", "says", "part", "value", "low", "high", "holds if", "part's verdict",
+         "verdict", "elsewhere"],
+        _claim_rows(listed, side),
+    )  # fmt: skip
+    for found in tables:
+        write_csv(out / f"table-{found['number']}.csv", found["head"], found["lines"])
+    write_csv(
+        out / "table-1.csv",
+        ["protocol", "printed", "n grows", "messages, exponent", "low", "high", "steps, exponent",
+         "low", "high", "networks"],
+        [[g.name, g.printed, g.way, *g.messages, *g.steps, g.networks] for g in grown],
+    )  # fmt: skip
+    for found in reached:
+        write_csv(out / f"{found['stem']}.csv", beyond.HEADER, found["lines"])
+
+
+def _claim_rows(listed: Sequence[Claim], side: Sequence[ReadingColumn]) -> Iterator[list[Any]]:
+    others = [(column.name, column.claims) for column in side[1:]]
+    for reading, found in [(side[0].name, listed), *others]:
+        for claim in found:
+            for part in claim.parts:
+                yield [
+                    reading, claim.where, claim.says, part.name, *part.interval, part.rule,
+                    part.verdict, claim.verdict, claim.odds,
+                ]  # fmt: skip
 
 
 def _beyond(results: Results, motions: Sequence[str]) -> list[dict[str, Any]]:
     """The tables of what RFTA3 comes to, one for each topology and motion."""
     limits = {world: beyond.typical_bounds(world) for world in beyond.TITLES}
+    runs = {motion: _default(results.where(motion=motion)) for motion in motions}
     return [
         {
             "title": f"{title}, {motion} motion",
             "stem": f"beyond-{world}-{motion}",
             "header": beyond.HEADER,
             "lines": beyond.lines(
-                list(beyond.reaches(results.where(motion=motion, world=world), limits[world]))
+                list(beyond.reaches(runs[motion].where(world=world), limits[world]))
             ),
             "limits": limits[world],
         }
@@ -142,48 +181,40 @@ def _beyond(results: Results, motions: Sequence[str]) -> list[dict[str, Any]]:
     ]
 
 
-def _ge_note(runs: Results, motion: str) -> str:
-    """The messages of RFTA2GE by the other ways to count its bids."""
-    relayed, aggregated = (
-        runs.where(series=series, search_radius=2.0).numbers("messages_per_robot").mean()
-        for series in ("rfta2ge", "rfta2ge-aggregated")
-    )
+def _growth_cells(growth: Growth) -> list[str]:
+    return [
+        growth.name, growth.printed, growth.way, _exponent(growth.messages),
+        _exponent(growth.steps), str(growth.networks),
+    ]  # fmt: skip
+
+
+def _exponent(found: Interval) -> str:
+    if not np.isfinite(found.value):
+        return "–"
+    return "{:.2f} [{:.2f}, {:.2f}]".format(*found).replace("-", "−")
+
+
+def _lead(listed: Sequence[Claim], first: ReadingColumn) -> str:
+    said = {
+        verdict: sum(claim.verdict == verdict for claim in listed)
+        for verdict in ("holds", "does not hold", "cannot tell")
+    }
+    near = first.cells["holds"]
     return (
-        "The paper does not say how RFTA2GE counts bids from two hops away. The table has the count"
-        " nearest to it: those two hops away bid only if they outbid whom they heard the call from,"
-        f" and each neighbour passes on the best. If all bid it is {aggregated:.1f} messages a"
-        f" robot, and {relayed:.1f} if every bid is relayed by itself ({motion} motion)."
+        f"Of {len(listed)} claims of the paper {said['holds']} hold, {said['does not hold']} do"
+        f" not, and of {said['cannot tell']} this campaign cannot tell, under the reading"
+        f" “{first.name}”. {near} of the {sum(first.cells.values())} values of its tables that can"
+        f" be compared are met within half a standard deviation."
     )
 
 
-def _printed(cell: MeanSd) -> str:
-    return f"{cell.mean:.2f}" + (f" ± {cell.sd:.2f}" if cell.sd is not None else "")
-
-
-def _measured(cell: Comparison) -> str:
-    apart = f" ({cell.difference:+.2f})".replace("-", "−") if cell.difference is not None else ""
-    return _printed(cell.measured) + apart
-
-
-def _lead(listed: Sequence[Claim], results: Results) -> str:
-    holding = sum(claim.verdict == "holds" for claim in listed)
-    failing = sum(claim.verdict == "does not hold" for claim in listed)
-    cells = [cell for world in TITLES for cell in compare(results, world)]
-    counted = [c for c in cells if c.difference is not None and not c.impossible]
-    near = sum(abs(c.difference or 0.0) <= 0.5 for c in counted)
+def _provenance(results: Results, motions: Sequence[str], side: Sequence[ReadingColumn]) -> str:
+    total = " and ".join(
+        f"{len(results.where(motion=motion)):,} runs in {motion} motion" for motion in motions
+    )
+    first = side[0].sample.networks
+    others = side[-1].sample.networks.each
     return (
-        f"Of the paper’s claims {holding} hold and {failing} do not;"
-        f" {len(listed) - holding - failing} times the paper contradicts itself."
-        f" {near} of the {len(counted)} values of its tables that can be compared are met within"
-        f" half a standard deviation."
+        f"{total}. Networks drawn for each range and topology: {first.each}, of {first.complete} in"
+        f" the full campaign; under the other readings of the search {others}."
     )
-
-
-def _provenance(results: Results, motions: Sequence[str]) -> str:
-    lifetimes = [results.where(motion=m) for m in motions]
-    counts = " and ".join(
-        f"{len(runs):,} runs in {motion} motion"
-        for runs, motion in zip(lifetimes, motions, strict=True)
-    )
-    networks = len(results.where(series="rfta2", radio_range=2.5).values("seed"))
-    return f"{counts}; networks drawn for each range and topology: {networks}."

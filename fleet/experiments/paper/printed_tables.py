@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fleet.experiments.paper.campaign_runs import Results
 from fleet.experiments.paper.published import (
     IMPOSSIBLE,
     PROTOCOLS,
@@ -15,37 +14,34 @@ from fleet.experiments.paper.published import (
     MeanSd,
     PrintedRow,
 )
-
-TWO_SR = 2.0  # the tables' search radius [m]
+from fleet.experiments.paper.readings import ge_series
+from fleet.experiments.paper.sample import TWO_SR, Sample
+from fleet.experiments.paper.verdicts import Judged, cell, judge
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A cell of a table: printed, measured, and how far apart."""
+    """A cell of a table: printed, measured, and whether they are the same."""
 
     row: PrintedRow
     protocol: str
     paper: MeanSd
     measured: MeanSd
     difference: float | None  # measured − printed, in pooled standard deviations
+    judged: Judged | None  # None: the paper prints no standard deviation
     impossible: str  # why the printed value cannot be, or nothing
 
 
-def compare(results: Results, world: str) -> list[Comparison]:
+def compare(sample: Sample, world: str) -> list[Comparison]:
     """Table 2 (``random``) or Table 3 (``random-hole``), pooled over all ranges, row by row.
 
-    The messages of RFTA2GE are those of the way to count bids that is nearest to the paper's:
-    two hops away only those bid that outbid whom they heard the call from.
+    The messages of RFTA2GE are those of the sample's way to count bids.
     """
     compared = []
     for row in ROWS:
         for protocol in PROTOCOLS:
-            series = protocol
-            if protocol == "rfta2ge" and row.key == "messages_per_robot":
-                series = "rfta2ge-outbid"
-            runs = results.where(series=series, world=world, search_radius=TWO_SR)
             paper = TABLES[world][protocol][row.key]
-            measured = pooled(runs, row)
+            measured, judged = _cell(sample, row, protocol, world, paper)
             compared.append(
                 Comparison(
                     row,
@@ -53,18 +49,29 @@ def compare(results: Results, world: str) -> list[Comparison]:
                     paper,
                     measured,
                     difference(paper, measured),
+                    judged,
                     IMPOSSIBLE.get((world, protocol, row.key), ""),
                 )
             )
     return compared
 
 
-def pooled(runs: Results, row: PrintedRow) -> MeanSd:
-    """Mean and standard deviation over all runs."""
+def _cell(
+    sample: Sample, row: PrintedRow, protocol: str, world: str, paper: MeanSd
+) -> tuple[MeanSd, Judged | None]:
+    """Mean and standard deviation over all runs, and the verdict on the mean."""
+    counted = protocol == "rfta2ge" and row.key == "messages_per_robot"
+    series = ge_series(sample.bids) if counted else protocol
+    runs = sample.runs.where(series=series, world=world, search_radius=TWO_SR)
     values = runs.numbers(row.key) * row.scale
     if len(values) < 2:
-        return MeanSd(float("nan"), float("nan"))
-    return MeanSd(float(np.mean(values)), float(np.std(values, ddof=1)))
+        return MeanSd(float("nan"), float("nan")), None
+    measured = MeanSd(float(np.mean(values)), float(np.std(values, ddof=1)))
+    band = cell(paper, measured.sd or 0.0)
+    if band is None:
+        return measured, None
+    name = f"{row.name}, {protocol}"
+    return measured, judge(sample.networks.mean(runs, values), band, name, row.unit)
 
 
 def difference(paper: MeanSd, measured: MeanSd) -> float | None:

@@ -95,3 +95,30 @@ IMPOSSIBLE = {
     ),
 }
 """Cells that cannot be as printed, and why."""
+
+FIGURES: dict[int, dict[tuple[str, str], str]] = {
+    7: {(w, "rfta1"): "around 25 % more than GFGF2" for w in ("random", "random-hole")},
+    8: {(w, "gfgf2"): "55 to 90 %" for w in ("random", "random-hole")},
+    9: {
+        ("random", "7-saap"): "7-SAAP up to 10 times RFTA2, 3 times RFTA2GE (messages)",
+        ("random", "bfs-7"): "BFS almost 30 times RFTA2",
+        ("random", "bfs-10"): "BFS-10 twice BFS-7",
+    },
+    10: {
+        ("random", "7-saap"): "a seventh of RFTA2 and RFTA2GE (lifetime)",
+        ("random", "bfs-7"): "BFS-7 much as 7-SAAP",
+        ("random", "bfs-10"): "BFS-10 twice BFS-7, a sixth of RFTA2",
+    },
+    11: {("random", "rfta2"): "around 350 rounds at the longest, constant for r > 0.2"},
+    13: {
+        ("random", "rfta2ge"): "up to almost 400 rounds",
+        ("random-hole", "rfta2ge"): "a little lower with the hole",
+    },
+    14: {(w, "rfta2ge"): "around 40 messages" for w in ("random", "random-hole")},
+    15: {(w, "rfta2ge"): "RFTA2GE around four times the others" for w in ("random", "random-hole")},
+    16: {
+        ("random", "gfgf2a"): "RFTA2 and RFTA2GE almost twice GFGF2A",
+        ("random-hole", "gfgf2a"): "almost four times with the hole, where GFGF2A is a fourth",
+    },
+}
+"""What the text says of the figures, by topology and series; their points are not printed."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 import io
 import re
 from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+
+from fleet.study.atomic import write_text
 
 INK, DIM, RULE = "#1b1f23", "#5b636b", "#d4d8dc"
 SERIES = (  # after Okabe and Ito's, which colour-blind readers tell apart
@@ -73,6 +76,14 @@ def svg_of(figure: Figure) -> str:
     text = io.StringIO()
     figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     return text.getvalue()
+
+
+def saved(figure: Figure, folder: Path, name: str) -> str:
+    """Write a figure as PNG and SVG; returns it as an element of a page."""
+    figure.savefig(folder / f"{name}.png", dpi=200)
+    svg = svg_of(figure)
+    write_text(folder / f"{name}.svg", svg)
+    return inline(svg)
 
 
 def inline(svg: str) -> str:
