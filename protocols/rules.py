@@ -14,7 +14,7 @@ first rule does not hold.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
 from math import isfinite, isnan
@@ -105,6 +105,33 @@ class Told(dict[RobotId, Any]):
         )
 
 
+def plainly_allowed(said: Any, told: Container[Any]) -> bool:
+    """Whether it is seen at once that a transmission may be made; else :meth:`Conduct.check` tells.
+
+    It is asked of each; ``told`` are the robots that have been told of the event.
+    """
+    if type(said) is not Transmission:
+        return False
+    parts: tuple[Any, ...] = said  # of whatever types they are
+    kind, sender, _, bid = parts
+    return (
+        type(kind) is str
+        and kind in OURS
+        and type(sender) is int
+        and sender in told
+        and (
+            bid is None
+            or (
+                type(bid) is Bid
+                and type(bid[0]) is float
+                and not isnan(bid[0])
+                and type(bid[1]) is int
+                and bid[1] in told
+            )
+        )
+    )
+
+
 class Conduct:
     """Holds one conversation to the rules. ``view`` is what its protocol is to see.
 
@@ -121,22 +148,25 @@ class Conduct:
 
     def heard(self, robots: Heard) -> None:
         """These have heard a transmission."""
-        told, fleet = self.told, self._fleet
         for robot in robots:
-            told[robot] = fleet[robot]
+            self.told[robot] = self._fleet[robot]
 
     def check(self, said: Any) -> None:
-        """Whether a transmission may be made.
+        """Whether a transmission may be made; a sentence for each thing that may be wrong.
 
         Raises:
             BrokenRule: it may not.
         """
-        if type(said) is Transmission:
-            kind, sender, _, bid = said
-            known = kind in OURS and type(sender) is int and sender in self.told
-            if known and (bid is None or self._sound(bid)):
-                return
-        self._check_slowly(said)
+        if not isinstance(said, Transmission):
+            raise BrokenRule(f"it yields {said!r:.{SHOWN}}; expected a Transmission")
+        kind, sender, receiver, bid = said
+        if not isinstance(kind, str) or kind not in OURS:
+            _check_kind(kind)
+        self._check_robot(sender, "speaks")
+        if receiver is not None:
+            self._check_number(receiver, "is spoken to")
+        if bid is not None:
+            self._check_bid(bid)
 
     def check_award(self, award: object) -> None:
         """Whether a conversation may end with this.
@@ -150,31 +180,11 @@ class Conduct:
             self._check_robot(award.winner, "wins")
         self._check_robot(award.auctioneer, "is named as the auctioneer")
         for bid in award.bids:
-            if not self._sound(bid):
-                self._check_bid(bid)
+            self._check_bid(bid)
         for move in award.moves:
             self._check_robot(move.robot, "is moved")
             if not all(map(isfinite, move.position)):
                 raise BrokenRule(f"robot {move.robot} is moved to {move.position}; expected x, y")
-
-    def _check_slowly(self, said: Any) -> None:
-        """As :meth:`check`, with a sentence for each thing that may be wrong."""
-        if not isinstance(said, Transmission):
-            raise BrokenRule(f"it yields {said!r:.{SHOWN}}; expected a Transmission")
-        kind, sender, receiver, bid = said
-        if kind not in OURS:
-            _check_kind(kind)
-        self._check_robot(sender, "speaks")
-        if receiver is not None:
-            self._check_number(receiver, "is spoken to")
-        if bid is not None:
-            self._check_bid(bid)
-
-    def _sound(self, bid: Any) -> bool:
-        """Whether a bid is one at sight."""
-        return (
-            type(bid) is Bid and type(bid[0]) is float and bid[1] in self.told and not isnan(bid[0])
-        )
 
     def _check_bid(self, bid: Any) -> None:
         if not isinstance(bid, Bid):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
 from dataclasses import is_dataclass
 from datetime import date, time
 from functools import cache, partial
@@ -19,7 +20,7 @@ from fleet.scenario.delimited import numbers
 from fleet.scenario.errors import BadInput, bad, or_list, sentence, shown, unknown
 from fleet.scenario.maps import occupancy_grid
 from fleet.scenario.model import Scenario
-from fleet.scenario.plugins import load_object, looks_like_file
+from fleet.scenario.plugins import held, home_of, load_object, looks_like_file
 from protocols.metrics import Metric
 from protocols.routing import Search
 from worlds.occupancy import OccupancyGrid
@@ -148,8 +149,7 @@ def metric(value: Any, key: str) -> Metric:
     else:
         function = look_up("metric", name, key).function
     if inspect.isclass(function):
-        make: Any = function
-        made: Metric = build(make, table, key)
+        made: Metric = made_by(function, name, table, key)
         return made
     if table:
         raise bad(f"{key}.{next(iter(table))}", f"the metric {name!r} has no parameters")
@@ -173,6 +173,27 @@ def build(
         return make()
     except ValueError as error:
         raise bad(key, str(error)) from error
+
+
+def made_by(
+    kind: type,
+    called: str,
+    table: Mapping[str, Any],
+    key: str,
+    others: Mapping[str, Callable[..., Any]] = MappingProxyType({}),
+) -> Any:
+    """What calling a class with the table makes: a protocol or a metric, the user's or ours.
+
+    Raises:
+        BadInput: from :func:`build`; or a class of the user's fails, or makes what nobody can call.
+    """
+    folder = home_of(called)
+    with nullcontext() if folder is None else held(called, folder, key):
+        made = build(kind, table, key, others)
+    if not callable(made):
+        said = f"{shown(called)} makes what cannot be called; expected a class with __call__"
+        raise bad(key, said)
+    return made
 
 
 def unusable(value: Any, key: str) -> Iterator[tuple[str, str]]:

@@ -15,7 +15,7 @@ from fleet.motion import Motion
 from fleet.power import ExtraPower, PowerModel
 from fleet.radio.hearsay import RadioParameters
 from fleet.robot import RobotSpec
-from fleet.scenario.binding import bind, build, field_types, keywords
+from fleet.scenario.binding import bind, build, field_types, keywords, made_by
 from fleet.scenario.errors import BadInput, bad, shown
 from fleet.scenario.model import Choice, Scenario, plain
 from fleet.scenario.plugins import load_object, looks_like_file
@@ -103,8 +103,9 @@ def bind_protocol(scenario: Scenario) -> ProtocolFunction:
         parameters["search"] = {**search, "radius": scenario.search_radius}
     elif "search_radius" in accepted:
         parameters["search_radius"] = scenario.search_radius
-    made: ProtocolFunction = (build if isclass(function) else bind)(
-        function, parameters, "protocol", takers("protocol")
+    given = (parameters, "protocol", takers("protocol"))
+    made: ProtocolFunction = (
+        made_by(function, name, *given) if isclass(function) else bind(function, *given)
     )
     made = guarded(made, name, plain(scenario.protocol))
     rehearse(made, name)

@@ -14,7 +14,7 @@ from fleet.scenario.errors import BadInput, bad, shown
 from fleet.scenario.plugins import what, where_in
 from fleet.scenario.watchdog import Stuck, Watch
 from protocols.messages import Award, Conversation, Event, Heard, ProtocolFunction, RobotId, View
-from protocols.rules import BrokenRule, Conduct, ReadOnlyRobot, all_knowing
+from protocols.rules import BrokenRule, Conduct, ReadOnlyRobot, all_knowing, plainly_allowed
 
 
 def begun(words: object, called: str) -> Conversation:
@@ -48,33 +48,53 @@ class Guard:
 
     def __call__(self, view: View, event: Event, source: RobotId) -> Conversation:
         """One conversation."""
+        conduct = self._conduct(view, source)
+        told, fleet, watch = conduct.told, self._seen, self._watch
+        heard: Heard = ()
+        words: Any = None
+        watch.begin()
+        try:
+            watch.steps += 1
+            watch.inside = True
+            words = begun(self._protocol(conduct.view, event, source), self._called)
+            said = next(words)
+            while True:
+                if not plainly_allowed(said, told):
+                    conduct.check(said)
+                watch.inside = False
+                if watch.struck:
+                    watch.settle()
+                heard = yield said
+                for robot in heard:
+                    told[robot] = fleet[robot]
+                watch.steps += 1
+                watch.inside = True
+                said = words.send(heard)
+        except StopIteration as end:
+            return _ended(conduct, words, end.value, self._called)
+        except (BadInput, GeneratorExit):
+            raise
+        except BrokenRule as broken:
+            raise self._broken(_thrown(words, broken)) from broken
+        except (Exception, SystemExit, Stuck) as error:
+            if (failed := self._failed(error)) is None:
+                raise
+            raise failed from error
+        finally:
+            watch.inside = False
+            watch.settle()
+
+    def _conduct(self, view: View, source: RobotId) -> Conduct:
         if view is not self._view:  # the rehearsal's robots, then the run's
             self._view, self._seen = view, [ReadOnlyRobot(robot) for robot in view]
-        conduct = Conduct(self._seen, source, knows_all=self.all_knowing)
-        heard: Heard | None = None
-        words: Any = None
-        while True:
-            try:
-                with self._watch:
-                    if words is None:
-                        returned = self._protocol(conduct.view, event, source)
-                        words = begun(returned, self._called)
-                    said = words.send(heard)
-                    conduct.check(said)
-                heard = yield said
-                conduct.heard(heard)
-            except StopIteration as end:
-                return _ended(conduct, words, end.value, self._called)
-            except (BadInput, GeneratorExit):
-                raise
-            except BrokenRule as broken:
-                raise self._broken(_thrown(words, broken)) from broken
-            except (Exception, SystemExit, Stuck) as error:
-                where = self._where(error)
-                if not where:  # none of the user's lines had a part in it
-                    raise
-                said = f"{shown(self._called)} fails{where}: {what(error)}"
-                raise bad("protocol", said) from error
+        return Conduct(self._seen, source, knows_all=self.all_knowing)
+
+    def _failed(self, error: BaseException) -> BadInput | None:
+        """The sentence about what the user's code raised; None: none of its lines had a part."""
+        where = self._where(error)
+        if not where:
+            return None
+        return bad("protocol", f"{shown(self._called)} fails{where}: {what(error)}")
 
     def _broken(self, broken: BrokenRule) -> BadInput:
         said = f"{shown(self._called)} breaks a rule{self._where(broken)}: {broken}"

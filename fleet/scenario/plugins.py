@@ -15,7 +15,7 @@ from typing import Any
 from zlib import crc32
 
 from fleet.scenario import watchdog
-from fleet.scenario.errors import bad, shown, unknown
+from fleet.scenario.errors import BadInput, bad, shown, unknown
 from fleet.scenario.reading import is_file, near_file, reason
 from fleet.scenario.watchdog import Stuck, Watch
 
@@ -50,6 +50,31 @@ def load_object(reference: str, key: str) -> Any:
         said = f"the parameters of {shown(reference)} cannot be read: {what(error)}"
         raise bad(key, said) from error
     return found
+
+
+def home_of(reference: str) -> Path | None:
+    """The folder of the user's file that a name means an object of; None: it means none."""
+    return (
+        Path(reference.rpartition(":")[0]).resolve().parent if looks_like_file(reference) else None
+    )
+
+
+@contextmanager
+def held(called: str, folder: Path, key: str) -> Iterator[None]:
+    """Code of the user's in ``folder``: whatever it raises, and that it never ends, is bad input.
+
+    Raises:
+        BadInput: one sentence, with the line. A ValueError says what it says, and no more.
+    """
+    try:
+        with Watch(folder):
+            yield
+    except BadInput:
+        raise
+    except ValueError as error:
+        raise bad(key, reason(error)) from error
+    except (Exception, SystemExit, Stuck) as error:
+        raise bad(key, f"{shown(called)} fails{where_in(error, folder)}: {what(error)}") from error
 
 
 def files_of(reference: str, key: str) -> tuple[Path, ...]:

@@ -11,7 +11,7 @@ from numbers import Real
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fleet.scenario.binding import bind, build
+from fleet.scenario.binding import bind, made_by
 from fleet.scenario.errors import bad, shown
 from fleet.scenario.guard import begun
 from fleet.scenario.plugins import load_object, what, where_in
@@ -46,7 +46,8 @@ def trial(reference: str) -> list[Verdict]:
     key = "check"
     function = load_object(reference, key)
     folder = Path(reference.rpartition(":")[0]).resolve().parent
-    found: Any = build(function, {}, key) if inspect.isclass(function) else bind(function, {}, key)
+    made = inspect.isclass(function)
+    found: Any = made_by(function, reference, {}, key) if made else bind(function, {}, key)
     needed = [
         parameter
         for parameter in inspect.signature(found).parameters.values()
@@ -60,7 +61,8 @@ def trial(reference: str) -> list[Verdict]:
         return _verdicts(checks, folder)
     if len(needed) == 2:
         checks = {claim: partial(check, found) for claim, check in METRIC.items()}
-        return _verdicts(checks, folder)
+        with Watch(folder):
+            return _verdicts(checks, folder)
     raise bad(
         key,
         f"{shown(reference)} takes {len(needed)} arguments; expected a protocol"

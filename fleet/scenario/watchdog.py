@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from ctypes import c_ulong, py_object, pythonapi
 from pathlib import Path
-from threading import Lock, Thread, get_ident
+from threading import Thread, get_ident
 from time import monotonic, sleep
 from types import FrameType
 from weakref import ref
@@ -27,37 +27,61 @@ class Watch:
 
     It can be entered as often as one likes. Importing libraries and compiling do not count.
 
+    Whoever is in and out thousands of times a second begins once, and then says by itself
+    when it is ``inside``, counts its ``steps``, and settles if the watch has ``struck``.
+    Nobody holds a lock: before it strikes the watcher says so and looks once more whether the
+    code is inside; whoever leaves says so and looks whether it was struck. One of them sees.
+
     Raises:
         Stuck: in the midst of the code, when it has been there for longer.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = str(folder)
-        self._lock = Lock()
+        self.inside = False
+        self.steps = 0  # times that it was entered
+        self.struck = False  # an exception may be on its way
         self._thread = 0
-        self._entered: float | None = None
+        self._seen = -1  # the step that was under way when it was last looked at
+        self._since = 0.0  # and when that was first seen [s]
         self._watcher: Thread | None = None
 
-    def __enter__(self) -> None:
-        with self._lock:
-            self._thread, self._entered = get_ident(), monotonic()
+    def begin(self) -> None:
+        """The code runs in this thread."""
+        self._thread = get_ident()
         if self._watcher is None:
             self._watcher = Thread(target=_look_after, args=(ref(self),), daemon=True)
             self._watcher.start()
 
+    def settle(self) -> None:
+        """Wait for an exception that may be on its way to this thread."""
+        while self.struck:
+            sleep(0.1 * TICK)
+
+    def __enter__(self) -> None:
+        self.begin()
+        self.steps += 1
+        self.inside = True
+
     def __exit__(self, *_: object) -> None:
-        with self._lock:
-            self._entered = None
+        self.inside = False
+        self.settle()
 
     def look(self) -> None:
         """Break the code off if it has been in there for too long."""
-        with self._lock:
-            if self._entered is None:
-                return
-            if _elsewhere(sys._current_frames().get(self._thread), self.folder):
-                self._entered += TICK
-            elif monotonic() - self._entered > PATIENCE:
+        step = self.steps
+        if not self.inside:
+            self.struck, self._seen = False, -1
+        elif step != self._seen:
+            self._seen, self._since = step, monotonic()
+        elif _elsewhere(sys._current_frames().get(self._thread), self.folder):
+            self._since += TICK
+        elif monotonic() - self._since > PATIENCE:
+            self.struck = True
+            if self.inside and self.steps == step:
                 pythonapi.PyThreadState_SetAsyncExc(c_ulong(self._thread), py_object(Stuck))
+            else:
+                self.struck = False
 
 
 def _look_after(watch: ref[Watch]) -> None:

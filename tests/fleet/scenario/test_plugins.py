@@ -13,6 +13,7 @@ from fleet.scenario import watchdog
 from fleet.scenario.errors import BadInput
 from fleet.scenario.loading import load_scenario
 from fleet.scenario.plugins import files_of, load_object
+from fleet.scenario.trial import trial
 
 SIBLING = """\
 from protocols.auctions import keep
@@ -227,3 +228,54 @@ def test_types_that_no_file_can_hold_are_one_sentence(tmp_path, name, said):
     with pytest.raises(BadInput) as refusal:
         fleet.run(fleet.Scenario.of(protocol=table, motion="straight", rounds=5))
     assert said in str(refusal.value)
+
+
+CLASSES = """
+class Raises:
+    def __init__(self): {}["x"]
+
+class Hangs:
+    def __init__(self):
+        while True: pass
+
+class Leaves:
+    def __init__(self): raise SystemExit(3)
+
+class Mute:
+    pass
+
+class Refuses:
+    def __init__(self): raise ValueError("no mood for that")
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("Raises", "fails in line 3 of classes.py: KeyError: 'x'"),
+        ("Hangs", "of classes.py: it does not come to an end within 0.5 s"),
+        ("Leaves", "fails in line 10 of classes.py: SystemExit: 3"),
+        ("Mute", "makes what cannot be called; expected a class with __call__"),
+        ("Refuses", "no mood for that"),
+    ],
+)
+@pytest.mark.parametrize("part", ["protocol", "metric"])
+def test_classes_that_do_not_come_into_being(tmp_path, monkeypatch, part, name, said):
+    monkeypatch.setattr(watchdog, "PATIENCE", 0.5)
+    (tmp_path / "classes.py").write_text(CLASSES)
+    reference = f"{tmp_path / 'classes.py'}:{name}"
+    table = {"name": reference} if part == "protocol" else {"name": "rfta2", "metric": reference}
+    with pytest.raises(BadInput) as refusal:
+        fleet.run(fleet.Scenario.of(protocol=table, motion="straight", rounds=1))
+    assert str(refusal.value).startswith("protocol")
+    assert said in str(refusal.value)
+    with pytest.raises(BadInput) as refusal:
+        trial(reference)
+    assert said in str(refusal.value)
+
+
+def test_a_metric_that_does_not_end_is_told_by_its_trial(tmp_path, monkeypatch):
+    monkeypatch.setattr(watchdog, "PATIENCE", 0.5)
+    (tmp_path / "own.py").write_text("def slow(robot, site):\n    while True: pass\n")
+    (verdict,) = trial(f"{tmp_path / 'own.py'}:slow")
+    assert "line 2 of own.py: it does not come to an end" in verdict.problem

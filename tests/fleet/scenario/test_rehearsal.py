@@ -57,7 +57,7 @@ def mine(tmp_path_factory):
     ("name", "said"),
     [
         ("one", "takes 1 positional argument but 3 were given"),
-        ("NotCalled", "not callable"),
+        ("NotCalled", "makes what cannot be called"),
         ("returns", "returns int 17; expected a generator of transmissions"),
         ("yields", "it yields 5; expected a Transmission"),
         ("ends", "it ends with None; expected an Award"),
