@@ -94,10 +94,9 @@ def export_trips(scenario: Scenario, folder: Path, speeds: Sequence[float]) -> N
     from fleet.assembly import run
     from fleet.logs.exporting import TripExport
 
-    engine = scenario.motion.name == "physics"
     for number, share in enumerate(speeds):
         robot = replace(scenario.robot, cruise=share * scenario.robot.cruise)
-        log = TripExport(folder, robot, engine=engine, run=number)
+        log = TripExport(folder, robot, run=number)
         run(replace(scenario, robot=robot), [log])
     click.echo(f"Logs: {folder}. Judge them with:  fleet energy --log {folder} --out DIR")
 

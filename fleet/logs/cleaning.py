@@ -22,7 +22,7 @@ SHORTEST = 5.0  # [s] of a stretch that is kept
 SPAN = 0.5  # [s] over which noisy speeds are averaged
 _NOISE = {"v": 0.01, "omega": 0.02}  # [m/s], [rad/s] from which they are
 _HELD = 20  # samples of the same speed: a command rather than a measurement
-_SLOWER = 2.5  # steps of motion from one power to the next: read at its own times
+_DENSER = 0.5  # steps of motion from one power to the next: it is averaged over these
 
 
 class Cleaned(NamedTuple):
@@ -246,16 +246,11 @@ def _aligned(
         return None
     rows = (time >= low) & (time <= high)
     begin = float(time[rows][0])
-    slow = float(np.median(np.diff(meter))) > _SLOWER * float(np.median(np.diff(time)))
-    if slow:
+    if float(np.median(np.diff(meter))) < _DENSER * float(np.median(np.diff(time))):
+        meter, power = time[rows], _averaged(time[rows], meter, power)
+    else:
         readings = (meter >= low) & (meter <= high)
         meter, power = meter[readings], power[readings]
-    else:
-        if len(meter) != len(time) or not np.array_equal(meter, time):
-            power = _averaged(time[rows], meter, power)
-        else:
-            power = power[rows]
-        meter = time[rows]
     if len(meter) < 10 or np.count_nonzero(rows) < 10:
         return None
     return LoggedRun(

@@ -26,12 +26,16 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-COLUMNS = ("time", "x", "y", "theta", "v", "omega", "power")
-"""Of a log: s, m, m, rad, m/s, rad/s, W. Rates and power are those of the step about the time."""
+COLUMNS = ("time", "x", "y", "theta", "v", "omega", "energy")
+"""Of a log: s, m, m, rad, m/s, rad/s, J drawn so far; all at the same instants.
+
+Energy, and not power, because a simulation settles up for whole steps: from one row to the next is
+one of them, and velocities are those before and after it.
+"""
 
 STANDING = 2.5  # [s] before and after each trip
 _KEPT = ("robot", "time", "x", "y", "heading", "energy")
-_ROBOT, _TIME, _X, _Y, _HEADING, _ENERGY = range(len(_KEPT))
+_ROBOT, _TIME, _X, _Y, _HEADING, _ENERGY, _RESTS = range(len(_KEPT) + 1)
 
 
 class TripExport(Observer):
@@ -46,18 +50,17 @@ class TripExport(Observer):
         folder: Path,
         spec: RobotSpec,
         interval: float = 1.0 / 60.0,
-        *,
-        engine: bool = True,
         run: int = 0,
     ) -> None:
         self.sample_interval = interval
         self._folder, self._spec, self._interval = folder, spec, interval
-        self._engine, self._run = engine, run
+        self._run = run
         self._samples: list[Floats] = []
 
     @override
     def moved(self, samples: Floats) -> None:
-        self._samples.append(samples[:, [SAMPLE_FIELDS.index(name) for name in _KEPT]])
+        kept = samples[:, [SAMPLE_FIELDS.index(name) for name in _KEPT]]
+        self._samples.append(np.column_stack([kept, np.zeros(len(kept))]))
 
     @override
     def run_started(self, fleet: Fleet) -> None:
@@ -83,16 +86,14 @@ class TripExport(Observer):
         """A robot as it is at the begin or the end of a trip, between samples."""
         robot = self._fleet.robots[number]
         self._samples.append(
-            np.array([[number, time, *robot.position, robot.heading, robot.energy]])
+            np.array([[number, time, *robot.position, robot.heading, robot.energy, 1.0]])
         )
 
     @override
     def run_ended(self, summary: Any) -> None:
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            for robot, log in logs_of(
-                self._samples, self._spec, self._interval, engine=self._engine
-            ).items():
+            for robot, log in logs_of(self._samples, self._spec, self._interval).items():
                 lines = [",".join(COLUMNS), *(",".join(f"{x:.9g}" for x in row) for row in log)]
                 path = self._folder / f"run-{self._run}-robot-{robot:03d}.csv"
                 path.write_text("\n".join(lines) + "\n", "utf-8")
@@ -103,14 +104,11 @@ class TripExport(Observer):
             ) from error
 
 
-def logs_of(
-    samples: Sequence[Floats], spec: RobotSpec, interval: float, *, engine: bool
-) -> dict[int, Floats]:
+def logs_of(samples: Sequence[Floats], spec: RobotSpec, interval: float) -> dict[int, Floats]:
     """The log of each robot (n, 7), :data:`COLUMNS`, from the poses that a run told of.
 
-    What a step takes goes with the mean of the velocities before and after it. With an ``engine``,
-    which moves bodies first and then changes their velocity, a step's own displacement is that of
-    the velocity before it, otherwise of the one after.
+    Motion first moves bodies and then changes their velocity: a step's displacement is that of the
+    velocity before it.
     """
     if not samples:
         return {}
@@ -120,48 +118,63 @@ def logs_of(
         mine = rows[rows[:, _ROBOT] == robot]
         mine = mine[np.unique(mine[:, _TIME].round(6), return_index=True)[1]]
         cuts = np.flatnonzero(np.diff(mine[:, _TIME]) > 1.5 * interval) + 1
-        trips = [trip for trip in np.split(mine, cuts) if len(trip) > 2]
-        if trips:
-            logs[int(robot)] = _one_after_the_other(trips, spec, interval, engine=engine)
+        drives = _from_rest(np.split(mine, cuts), spec.extra.idle, interval)
+        if drives:
+            logs[int(robot)] = _one_after_the_other(drives, spec, interval)
     return logs
 
 
-def _one_after_the_other(
-    trips: Sequence[Floats], spec: RobotSpec, interval: float, *, engine: bool
-) -> Floats:
-    """A robot's trips with standing around them; its clock stops while it stands for longer."""
-    rest = round(STANDING / interval)
+def _from_rest(parts: Sequence[Floats], idle: float, interval: float) -> list[Floats]:
+    """Stretches of driving; one that begins under way gets the instant before, when it stood.
+
+    Who waits for others is told of from its first step on.
+    """
+    drives = []
+    before: Floats | None = None
+    for part in parts:
+        if before is not None and not part[0, _RESTS]:
+            rest = before.copy()
+            rest[_TIME] = part[0, _TIME] - interval
+            rest[_ENERGY] -= idle * (rest[_TIME] - before[_TIME])
+            drives.append(np.vstack([rest, part]))
+        elif len(part) > 2:
+            drives.append(part)
+        before = part[-1]
+    return drives
+
+
+def _one_after_the_other(drives: Sequence[Floats], spec: RobotSpec, interval: float) -> Floats:
+    """A robot's drives with standing around them; its clock stops while it stands for longer."""
     parts = []
-    for trip in trips:
-        steps = _steps(trip, spec, engine=engine)
+    for drive in drives:
+        rows = _instants(drive, spec)
         for end in (0, -1):
-            stand = np.repeat(steps[[end]], rest, axis=0)
-            stand[:, 4:] = 0.0, 0.0, spec.extra.idle
+            stand = np.repeat(rows[[end]], round(STANDING / interval), axis=0)
+            stand[:, 4:] = 0.0, 0.0, spec.extra.idle * interval
             parts.append(stand)
-        parts.insert(-1, steps)
+        parts.insert(-1, rows)
     log = np.concatenate(parts)
     log[:, 0] = interval * np.arange(len(log))
+    log[:, 6] = np.cumsum(log[:, 6])
     return log
 
 
-def _steps(trip: Floats, spec: RobotSpec, *, engine: bool) -> Floats:
-    """Place, rates and power of each step of a trip: at its middle."""
-    step = np.diff(trip[:, _TIME])
-    dx, dy = np.diff(trip[:, _X]), np.diff(trip[:, _Y])
-    heading = np.unwrap(trip[:, _HEADING])
-    theta, turn = 0.5 * (heading[1:] + heading[:-1]), np.diff(heading)
-    middle = 0.5 * (trip[1:] + trip[:-1])
+def _instants(drive: Floats, spec: RobotSpec) -> Floats:
+    """Place, velocity and what was drawn since the row before, (n, 7)."""
+    step = np.diff(drive[:, _TIME])
+    dx, dy = np.diff(drive[:, _X]), np.diff(drive[:, _Y])
+    heading = np.unwrap(drive[:, _HEADING])
+    turn = np.diff(heading)
     if spec.drive == "holonomic":
         ahead, turn = np.hypot(dx, dy), np.zeros(len(dx))
     else:
+        theta = heading[:-1] + 0.5 * turn
         ahead = dx * np.cos(theta) + dy * np.sin(theta)
     rates = np.column_stack([ahead, turn]) / step[:, None]
-    nothing = np.zeros((1, 2))
-    other = np.vstack([rates[1:], nothing] if engine else [nothing, rates[:-1]])
-    rates = 0.5 * (rates + other)
-    spent = -np.diff(trip[:, _ENERGY])
+    rates = np.vstack([rates, np.zeros((1, 2))])
+    spent = np.r_[spec.extra.idle * step[0], -np.diff(drive[:, _ENERGY])]
     return np.column_stack([
-        middle[:, _TIME], middle[:, _X], middle[:, _Y], theta, rates, spent / step,
+        drive[:, _TIME], drive[:, _X], drive[:, _Y], heading, rates, spent,
     ])  # fmt: skip
 
 

@@ -91,9 +91,11 @@ def scrub_share(chassis: Chassis, v: Floats, omega: Floats, soft: float = _SOFT)
 
 
 def _sides(chassis: Chassis, time: Floats, v: Floats, omega: Floats) -> tuple[_Side, _Side]:
-    half = chassis.half_track
-    push = 0.5 * chassis.mass * np.gradient(v, time)
-    twist = 0.5 * chassis.inertia / half * np.gradient(omega, time)
+    """Both sides, from each sample to the next: n is one less than there are samples."""
+    half, step = chassis.half_track, np.diff(time)
+    push = 0.5 * chassis.mass * np.diff(v) / step
+    twist = 0.5 * chassis.inertia / half * np.diff(omega) / step
+    v, omega = _means(v, omega)
     soft = scrub_share(chassis, v, omega)
 
     def side(sign: float) -> _Side:
@@ -104,10 +106,15 @@ def _sides(chassis: Chassis, time: Floats, v: Floats, omega: Floats) -> tuple[_S
     return side(-1.0), side(1.0)
 
 
+def _means(v: Floats, omega: Floats) -> tuple[Floats, Floats]:
+    """Speeds and turning rates from each sample to the next."""
+    return 0.5 * (v[1:] + v[:-1]), 0.5 * (omega[1:] + omega[:-1])
+
+
 def wheel_forces(
     chassis: Chassis, time: Floats, v: Floats, omega: Floats, parameters: Floats
 ) -> tuple[Floats, Floats]:
-    """What the left and the right wheels push with, (n,) [N] each."""
+    """What the left and right wheels push with, from each of n + 1 samples to the next (n,) [N]."""
     left, right = _sides(chassis, time, v, omega)
     return left.force(parameters), right.force(parameters)
 
@@ -117,13 +124,15 @@ def linearised(
 ) -> tuple[Floats, Floats]:
     """Power near ``parameters`` (5,): its derivatives (n, 5) [W per unit], and the rest (n,) [W].
 
+    From each of n + 1 samples to the next: work is force times the mean of the velocities.
+
     Parameters in the order of :data:`fleet.logs.sampling.TERMS`: rolling F [N], constant [W], scrub
     Q [N·m], turning [W], viscous k [N·s/m].
     """
-    terms = np.zeros((len(v), 5))
-    rest = np.zeros(len(v))
+    terms = np.zeros((len(v) - 1, 5))
+    rest = np.zeros(len(v) - 1)
     terms[:, 1] = 1.0
-    terms[:, 3] = np.abs(scrub_share(chassis, v, omega, _SOFTER))
+    terms[:, 3] = np.abs(scrub_share(chassis, *_means(v, omega), _SOFTER))
     for side in _sides(chassis, time, v, omega):
         force = side.force(parameters)
         gain = np.where(

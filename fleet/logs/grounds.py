@@ -14,12 +14,15 @@ from fleet.scenario.errors import bad
 Floats = NDArray[np.float64]
 
 
+SLOWER = 2.5  # steps of motion from one power to the next: it is read less often
+
+
 @dataclass(frozen=True, slots=True)
 class LoggedRun:
     """A stretch of a log without gaps: how the robot moved, and the power that it took.
 
-    Motion and power are each at their own times, which are the same if the power was read as often
-    as the motion.
+    Motion and power are each at their own times, which may be the same. A power stands for the time
+    from halfway to the reading before to halfway to the one after.
     """
 
     file: str  # stretches of one file are one run when runs are held out
@@ -37,7 +40,8 @@ class LoggedRun:
     @property
     def slow(self) -> bool:
         """Whether the power was read less often than the motion."""
-        return len(self.meter) != len(self.time)
+        steps = float(np.median(np.diff(self.time)))
+        return float(np.median(np.diff(self.meter))) > SLOWER * steps
 
 
 @dataclass(slots=True)

@@ -25,6 +25,7 @@ FEWEST = 4  # files; of fewer, stretches stand for runs
 STRETCH = 20.0  # [s] of one
 MOST_SHARE = 0.5  # of all driving, that one run may hold
 SHORTEST_TRIP = 1.0  # [m]
+_TOUCHED = 0.01  # of a reading driven: less is how times are rounded
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +99,8 @@ def stands(time: Floats, v: Floats, omega: Floats) -> NDArray[np.bool_]:
 
 
 Rates = Callable[[LoggedRun], tuple[Floats, Floats]]
-"""For a run of n samples: what coefficients multiply (n, 5), and what they do not (n,) [W]."""
+"""For a run of n samples: what coefficients multiply (n, 5), and what they do not (n,) [W]; at the
+samples, or from each to the next (n - 1)."""
 
 
 def plain_rates(run: LoggedRun) -> tuple[Floats, Floats]:
@@ -209,33 +211,64 @@ def _at_meter(
     """For each reading: the share of it driven, terms, rest and metres (k, 7), its length."""
     edges = np.r_[run.meter[0], 0.5 * (run.meter[1:] + run.meter[:-1]), run.meter[-1]]
     step: Floats = np.diff(edges)
-    moving: Floats = (~stands(run.time, run.v, run.omega)).astype(float)
-    terms: Floats = np.column_stack([*rated, np.abs(run.v)]) * moving[:, None]
-    if not run.slow and lag == 0.0:
+    driven = ~stands(run.time, run.v, run.omega)
+    columns = np.column_stack([*rated, np.abs(run.v[: len(rated[1])])])
+    if len(rated[1]) < len(run.v):
+        columns[:, -1] = 0.5 * np.abs(run.v[1:] + run.v[:-1])
+    if np.array_equal(run.meter, run.time):
+        moving: Floats = driven.astype(float)
+        terms = _at_instants(run.time, columns) * moving[:, None]
         return moving, terms * step[:, None], step
-    at = run.meter - lag
-    least = float(np.median(np.diff(run.time)))
-    half = 0.5 * max(over, least)
-    averaged = Averages(run.time, np.column_stack([moving, terms])).between(at - half, at + half)
-    averaged[averaged[:, 0] < 1e-9] = 0.0
+    moves = (driven[1:] | driven[:-1]).astype(float)
+    columns = _between_instants(run.time, columns) * moves[:, None]
+    averages = Averages(run.time, np.column_stack([moves, columns]))
+    if run.slow:
+        half = 0.5 * max(over, float(np.median(np.diff(run.time))))
+        averaged = averages.between(run.meter - lag - half, run.meter - lag + half)
+    else:
+        averaged = averages.between(edges[:-1], edges[1:])
+    averaged[averaged[:, 0] < _TOUCHED] = 0.0
     return averaged[:, 0], averaged[:, 1:] * step[:, None], step
 
 
+def _at_instants(time: Floats, values: Floats) -> Floats:
+    """Values (n, p) at ``time`` (n,), if they are those between the instants (n - 1, p)."""
+    if len(values) == len(time):
+        return values
+    weight = np.diff(time)[:, None]
+    none = np.zeros((1, 1))
+    before, after = np.vstack([none, weight]), np.vstack([weight, none])
+    first, last = np.vstack([values[:1], values]), np.vstack([values, values[-1:]])
+    mean: Floats = (before * first + after * last) / (before + after)
+    return mean
+
+
+def _between_instants(time: Floats, values: Floats) -> Floats:
+    """Values (n - 1, p) between instants, the means of their ends if they are at ``time`` (n,)."""
+    return 0.5 * (values[1:] + values[:-1]) if len(values) == len(time) else values
+
+
 class Averages:
-    """Means of signals (n, p) over spans of time."""
+    """Means of signals, at instants (n, p) or between these (n - 1, p), over spans of time."""
 
     def __init__(self, time: Floats, values: Floats) -> None:
-        middle = 0.5 * (values[1:] + values[:-1]) * np.diff(time)[:, None]
+        grown = _between_instants(time, values) * np.diff(time)[:, None]
         self._time = time
-        self._so_far = np.vstack([np.zeros(values.shape[1]), np.cumsum(middle, axis=0)])
+        self._so_far = np.vstack([np.zeros(values.shape[1]), np.cumsum(grown, axis=0)])
 
     def between(self, low: Floats, high: Floats) -> Floats:
         """The means (k, p) from ``low`` to ``high`` (k,) [s], held to the span of the signals."""
         begin, end = self._time[0], self._time[-1]
         low, high = np.clip(low, begin, end - 1e-3), np.clip(high, begin + 1e-3, end)
-        at = np.stack([np.interp(high, self._time, column) for column in self._so_far.T], axis=1)
-        at -= np.stack([np.interp(low, self._time, column) for column in self._so_far.T], axis=1)
-        return at / (high - low)[:, None]
+        return (self._at(high) - self._at(low)) / (high - low)[:, None]
+
+    def _at(self, time: Floats) -> Floats:
+        """What signals add up to until ``time`` (k,), (k, p)."""
+        place = np.clip(np.searchsorted(self._time, time, "right") - 1, 0, len(self._time) - 2)
+        begin = self._time[place]
+        share = ((time - begin) / (self._time[place + 1] - begin))[:, None]
+        so_far: Floats = self._so_far[place] * (1.0 - share) + self._so_far[place + 1] * share
+        return so_far
 
 
 def windows(samples: Samples, length: float | None = None) -> Pieces:

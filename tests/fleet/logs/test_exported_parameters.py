@@ -1,0 +1,70 @@
+"""Trips of a simulation, read back as logs, give the robot that drove them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from fleet.assembly import run
+from fleet.logs.exporting import TripExport
+from fleet.logs.gathering import gather
+from fleet.logs.judging import judge
+from fleet.logs.presets import preset_keys
+from fleet.robot import PRESETS
+from fleet.scenario.loading import scenario_from
+
+CLOSE = 0.02
+FLEETS = {"small": (12, 10.0), "pioneer": (12, 14.0), "husky": (8, 20.0), "ideal": (12, 10.0)}
+
+
+def exported(folder, preset, motion="path", rounds=16):
+    """A ground of trips at three speeds, and the robot that drove them."""
+    robots, side = FLEETS[preset]
+    scenario = scenario_from({
+        "robots": robots, "rounds": rounds, "motion": motion, "range": 30.0,
+        "world": {"width": side, "height": side}, "robot": {"preset": preset, "capacity": 1e5},
+    })  # fmt: skip
+    for number, share in enumerate((1.0, 0.7, 0.4)):
+        robot = replace(scenario.robot, cruise=share * scenario.robot.cruise)
+        run(replace(scenario, robot=robot), [TripExport(folder, robot, run=number)])
+    return gather([folder])[0], scenario.robot
+
+
+def parts(robot):
+    """What a log can tell of a robot."""
+    return {
+        "quadratic": robot.power.quadratic,
+        "linear": robot.power.linear,
+        "constant": robot.power.constant,
+        "scrub": robot.scrub,
+        "turning": robot.turning,
+    }
+
+
+SLOWLY = [(preset, motion) for preset in PRESETS for motion in ("path", "physics")]
+
+
+@pytest.mark.parametrize(
+    ("preset", "motion"),
+    [
+        ("husky", "path"),
+        *(pytest.param(*both, marks=pytest.mark.slow) for both in SLOWLY if both[0] != "husky"),
+        pytest.param("husky", "physics", marks=pytest.mark.slow),
+    ],
+)
+def test_every_part_of_a_preset_is_found_within_two_percent(tmp_path, preset, motion):
+    """A part that is 0, within 2 % of the power at cruise speed."""
+    ground, robot = exported(tmp_path, preset, motion, rounds=16 if motion == "path" else 40)
+    judged = judge(ground)
+    found = {key.key: key.value for key in preset_keys(judged)}
+    cruise = robot.cruise
+    power = robot.power.power(cruise)
+    weight = {"quadratic": cruise**2, "linear": cruise, "constant": 1.0, "turning": 1.0}
+    for name, truth in parts(robot).items():
+        if truth > 0.0:
+            assert found[name] == pytest.approx(truth, rel=CLOSE), name
+        else:
+            assert found[name] * weight.get(name, 1.0) <= CLOSE * power, name
+    if robot.drive == "holonomic":
+        assert "angle" not in judged.preset.terms
