@@ -25,6 +25,7 @@ COMMANDS = {
     "run": "Play one run and print its summary.",
     "schema": "Print what may stand in a scenario or study file, for editors.",
     "sweep": "Run a study: every combination with every seed.",
+    "verify": "Check a study's bundle, and run a sample of its runs again.",
     "view": "Open recordings in the Rerun viewer.",
 }
 

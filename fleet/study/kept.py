@@ -66,8 +66,12 @@ class Kept:
         ]
 
 
-def kept_run(folder: Path, prefix: str, *, trust: bool = False) -> Kept:
+def kept_run(
+    folder: Path, prefix: str, *, trust: bool = False, named_from: Path | None = None
+) -> Kept:
     """The run whose key begins with ``prefix``.
+
+    Files are named from where the study was started, or ``named_from``.
 
     A folder is data: Python files that it names are run only if this user has swept with the same
     files at the same paths, or if ``trust`` is given.
@@ -81,7 +85,7 @@ def kept_run(folder: Path, prefix: str, *, trust: bool = False) -> Kept:
         job = ledger.job(key)
         if job.function != PLAY:
             raise bad("KEY", f"is of work by {job.function!r}; expected a run of a scenario")
-        started_in = Path(ledger.meta().get("folder", "."))
+        started_in = named_from or Path(ledger.meta().get("folder", "."))
         row = ledger.row(key)
     with chdir(started_in if started_in.is_dir() else Path.cwd()):
         named = code_named(job.made_by).items()

@@ -191,6 +191,26 @@ class Ledger:
         """All keys, in the plan or not."""
         return [key for (key,) in self._database.execute("SELECT key FROM job ORDER BY key")]
 
+    def places(self) -> Iterator[tuple[str, str]]:
+        """The key and the cell of each planned run, in order."""
+        yield from self._database.execute("SELECT key, cell FROM plan ORDER BY position")
+
+    def done_by(self, function: str) -> list[str]:
+        """The keys of the planned runs of that work function that are done, in order."""
+        found = self._database.execute(
+            "SELECT key FROM plan JOIN run USING (key) JOIN job USING (key)"
+            " WHERE status = 'done' AND function = ? GROUP BY key ORDER BY min(position)",
+            (function,),
+        )
+        return [key for (key,) in found]
+
+    def origins(self) -> list[dict[str, Any]]:
+        """What planned runs depend on besides their scenarios, each once."""
+        found = self._database.execute(
+            "SELECT DISTINCT origin FROM plan JOIN job USING (key) ORDER BY origin"
+        ).fetchall()
+        return [self._parsed(self._origin(number).text, f"origin {number}") for (number,) in found]
+
     def job(self, key: str) -> Job:
         """What is run under a key: the very job that the key was made of.
 
@@ -232,11 +252,7 @@ class Ledger:
 
     def code(self) -> Iterator[tuple[Path, str]]:
         """The user's Python files that planned jobs run, each with the sha256 that it had."""
-        found = self._database.execute(
-            "SELECT DISTINCT origin FROM plan JOIN job USING (key)"
-        ).fetchall()
-        for (number,) in found:
-            described = self._parsed(self._origin(number).text, f"origin {number}")
+        for described in self.origins():
             for name, digest in code_named(described).items():
                 yield Path(name), digest
 

@@ -77,6 +77,16 @@ def write_report(folder: Path, out: Path | None = None) -> Path:
         raise bad("", str(error)) from error
 
 
+def has_report_of_its_own(folder: Path) -> bool:
+    """Whether what ran there was no study, but an experiment that has written its own page.
+
+    Raises:
+        BadInput: the folder holds no study.
+    """
+    with reading(folder) as ledger:
+        return "study" not in ledger.meta() and (folder / "report.html").is_file()
+
+
 def _write(folder: Path, path: Path) -> Path:
     with reading(folder) as ledger:
         meta, counts, failures = ledger.meta(), ledger.counts(), ledger.failures()
