@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from contextlib import ExitStack
 from pathlib import Path
@@ -64,7 +63,7 @@ def command(
         from fleet.assembly import run
         from fleet.cli.notices import Notices
         from fleet.cli.progress import RunProgress
-        from fleet.cli.summary import print_summary
+        from fleet.cli.summary import SummaryFirst
         from fleet.scenario.loading import load_scenario
 
         loaded = load_scenario(scenario, given, settings)
@@ -72,16 +71,13 @@ def command(
         if sys.stderr.isatty():
             observers.append(progress := RunProgress(loaded.rounds))
             stack.callback(progress.closed)  # also if the run is refused
+        observers.append(SummaryFirst(as_json=as_json))  # a recording is still to be drawn
         if writer is not None:
             from fleet.replay import recorder
 
             observers.append(recorder(loaded, rrd, live=flags["view"], writer=writer))
-        summary = run(loaded, observers)
-    if as_json:
-        click.echo(json.dumps(summary.as_dict()))
-        return
-    print_summary(summary)
-    if rrd is not None:
+        run(loaded, observers)
+    if rrd is not None and not as_json:
         click.echo(f"\nRecorded to {rrd}. Open it with:  {program()} view {rrd}")
 
 

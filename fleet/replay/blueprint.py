@@ -65,6 +65,9 @@ def side_by_side(stages: Sequence[Stage], timeline: str = scheme.ROUND) -> rrb.B
     )
     curves = rrb.Grid(
         *(_shared(stages, name, path, span) for name, path, span in _compared(stages)),
+        _curves(scheme.DIFFERENCE_ENERGY, "More energy for trips than the first, so far [J]"),
+        _curves(scheme.DIFFERENCE_MESSAGES, "More messages than the first, so far"),
+        grid_columns=2,
         name="Lifetime",
     )
     difference = rrb.TextDocumentView(origin=scheme.DIFFERENCE, name="Where they part")

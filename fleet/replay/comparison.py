@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from string import ascii_lowercase
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
@@ -13,6 +13,7 @@ import rerun as rr
 from fleet.replay import scheme
 from fleet.replay.blueprint import Span, Stage, blueprint, side_by_side
 from fleet.replay.columns import Index, column, doubles
+from fleet.replay.parting import Parting, differing, parting
 from fleet.replay.readback import NANO, Recording, sound
 from fleet.replay.scheme import APPLICATION, COMPARISON, ROUND, STORY
 
@@ -24,6 +25,11 @@ CURVES = {  # of each recording in one plot: what is plotted, and which of its f
     scheme.COMPARED_MESSAGES: (scheme.FLEET_MESSAGES, slice(None)),
     scheme.COMPARED_ON_AIR: (scheme.ON_AIR, slice(None)),
 }
+DIFFERENCES = {  # of a recording to the first, so far
+    scheme.DIFFERENCE_ENERGY: (scheme.TOTAL_ENERGY, slice(1, 2)),
+    scheme.DIFFERENCE_MESSAGES: (scheme.FLEET_MESSAGES, slice(None)),
+}
+MOST_SETTINGS = 3  # that a recording is named by
 
 
 class Aim(NamedTuple):
@@ -53,7 +59,10 @@ def arrange(
     elif aim != Aim():
         raise ValueError("an event or a robot is looked at in one recording; expected one")
     else:
-        stages = [_stage(r, f"{x}/") for r, x in zip(loaded, ascii_lowercase, strict=False)]
+        stages = [
+            _stage(recording, f"{letter}/")._replace(name=name)
+            for recording, letter, name in zip(loaded, ascii_lowercase, names(loaded), strict=False)
+        ]
         layout = side_by_side(stages, timeline or ROUND)
     key = "+".join(recording.key for recording in loaded)
     sink = rr.RecordingStream(
@@ -72,7 +81,10 @@ def arrange(
     if not single:
         for k, (recording, stage) in enumerate(zip(loaded, stages, strict=True)):
             _send_curves(sink, recording, stage, LINE_COLOURS[k])
-        text = rr.TextDocument(difference(*loaded[:2]), media_type=rr.MediaType.MARKDOWN)
+        for recording, letter in zip(loaded[1:], ascii_lowercase[1:], strict=False):
+            _send_differences(sink, loaded[0], recording, letter)
+        words = "\n\n".join(parting(loaded[0], recording).markdown() for recording in loaded[1:])
+        text = rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN)
         sink.log(scheme.DIFFERENCE, text, static=True)
     sink.flush()
     sink.disconnect()
@@ -125,48 +137,13 @@ def _span(recording: Recording, event: int) -> Span:
     return Span(mine[0], mine[-1] + scheme.PAUSE)
 
 
-def difference(one: Recording, other: Recording) -> str:
-    """Where two runs part, event by event, and how they differ from there on: Markdown."""
-    first = {task["event"]: task for task in one.table(scheme.TASKS).to_pylist()}
-    second = {task["event"]: task for task in other.table(scheme.TASKS).to_pylist()}
-    names = f"`{one.path.name}` and `{other.path.name}`"
-    shared = sorted(first.keys() & second.keys())
-    parted = next((e for e in shared if _signature(first[e]) != _signature(second[e])), None)
-    if parted is None:
-        more = f" {names} have {len(first)} and {len(second)} events." * (len(first) != len(second))
-        return f"## They never part\n\nAll {len(shared)} events that both have end alike.{more}"
-    rows = [
-        "| event | " + " | ".join(f"{run.path.name}" for run in (one, other)) + " |",
-        "|---|---|---|",
-    ]
-    others = [e for e in shared if _signature(first[e]) != _signature(second[e])]
-    rows += [f"| {e} | {_told(first[e])} | {_told(second[e])} |" for e in others[:20]]
-    spent = [_energy(run, parted) for run in (one, other)]
-    return (
-        f"## They part at event {parted}\n\n"
-        f"{names} are alike before it. From there on their trips take"
-        f" **{spent[0]:.1f} J** and **{spent[1]:.1f} J**, a difference of"
-        f" {spent[1] - spent[0]:+.1f} J.\n\n" + "\n".join(rows)
-    )
+def comparison(one: Path, other: Path) -> Parting:
+    """Where two recordings part, and how they differ from there on.
 
-
-def _signature(task: dict[str, Any]) -> tuple[Any, ...]:
-    return task["x"], task["y"], task["robot"], task["outcome"], task["offers"]
-
-
-def _told(task: dict[str, Any]) -> str:
-    who = "nobody" if task["robot"] < 0 else f"r{task['robot']}"
-    cost = "" if task["cost"] is None else f", bid {task['cost']:.2f}"
-    return f"{who}{cost}, {task['outcome']}"
-
-
-def _energy(recording: Recording, event: int) -> float:
-    """What trips to an event and all later ones took [J]."""
-    return sum(
-        float(trip["energy"])
-        for trip in recording.table(scheme.TRIPS).to_pylist()
-        if trip["event"] >= event
-    )
+    Raises:
+        ValueError: one of them cannot be read.
+    """
+    return parting(sound(one), sound(other))
 
 
 def _send_curves(sink: rr.RecordingStream, recording: Recording, stage: Stage, colour: int) -> None:
@@ -183,6 +160,58 @@ def _send_curves(sink: rr.RecordingStream, recording: Recording, stage: Stage, c
         sink.log(stage(path), style, static=True)
         scalars = column(rr.Scalars.descriptor_scalars(), doubles(values))
         sink.send_columns(stage(path), when.columns(), [scalars])
+
+
+def _send_differences(
+    sink: rr.RecordingStream, first: Recording, other: Recording, letter: str
+) -> None:
+    """How much more than the first run another has taken so far, round by round."""
+    for path, (source, figures) in DIFFERENCES.items():
+        totals = [_so_far(run, source, figures) for run in (first, other)]
+        shared = [k for k in totals[0] if k in totals[1]]
+        if not shared:
+            continue
+        rows = [totals[0][k][0] for k in shared]
+        values = [totals[1][k][1] - totals[0][k][1] for k in shared]
+        times, msgs, stories = (np.array(part) for part in zip(*rows, strict=True))
+        when = Index(times / NANO, np.array(shared), msgs, stories / NANO)
+        style = rr.SeriesLines.from_fields(
+            names=[f"{letter} − a"], colors=[LINE_COLOURS[ord(letter) - ord("a")]], widths=[2.0]
+        )
+        sink.log(f"{path}/{letter}", style, static=True)
+        scalars = column(rr.Scalars.descriptor_scalars(), doubles(values))
+        sink.send_columns(f"{path}/{letter}", when.columns(), [scalars])
+
+
+def _so_far(
+    run: Recording, source: str, figures: slice
+) -> dict[int, tuple[tuple[int, int, int], float]]:
+    """By round: its last moment, and what has been counted until then."""
+    rows = run.rows(source, "Scalars:scalars")
+    values = [float(np.sum(np.asarray(row)[figures])) for row in rows.values]
+    if source == scheme.FLEET_MESSAGES:  # counted for each event, not for all
+        values = np.cumsum(values).tolist()
+    moments = rows.moments
+    three = (moments[name].tolist() for name in (scheme.SIM_TIME, scheme.MSG, STORY))
+    when = list(zip(*three, strict=True))
+    return dict(zip(moments[ROUND].tolist(), zip(when, values, strict=True), strict=True))
+
+
+def names(recordings: Sequence[Recording]) -> list[str]:
+    """What tells recordings apart: their titles, and if those do not, what of their scenarios
+    does, or their files.
+    """
+    titles = [recording.properties["scene"].get("title", "") for recording in recordings]
+    if len(set(titles)) == len(titles):
+        return titles
+    unlike = sorted({name for other in recordings[1:] for name in differing(recordings[0], other)})
+    tails = [
+        " · ".join(f"{n} {recording.properties['run'].get(n)}" for n in unlike[:MOST_SETTINGS])
+        for recording in recordings
+    ]
+    if len(set(zip(titles, tails, strict=True))) < len(titles):
+        tails = [recording.path.stem for recording in recordings]
+    return [f"{title} · {tail}" for title, tail in zip(titles, tails, strict=True)]
 
 
 def _stage(recording: Recording, root: str) -> Stage:

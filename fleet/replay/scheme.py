@@ -87,7 +87,9 @@ COMPARED_ENERGY: Final = "compared/energy"
 COMPARED_TOTAL: Final = "compared/total_energy"
 COMPARED_MESSAGES: Final = "compared/messages"
 COMPARED_ON_AIR: Final = "compared/on_air"
-DIFFERENCE: Final = "difference"
+DIFFERENCE: Final = "difference"  # in words, and as curves, each to the first
+DIFFERENCE_ENERGY: Final = "difference/energy"
+DIFFERENCE_MESSAGES: Final = "difference/messages"
 
 # The whole lifetime.
 ENERGY_MAP: Final = "lifetime/energy_map"

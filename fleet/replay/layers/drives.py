@@ -15,7 +15,7 @@ from fleet.replay.journal import TripEnd
 from fleet.replay.scheme import DRIVEN, PLANNED, RELOCATION, STRAIGHT
 from fleet.replay.sink import Sink
 from fleet.replay.state import FleetState, Layer
-from protocols.messages import RobotId
+from protocols.messages import Point, RobotId
 
 TRAIL_INTERVAL = 0.25  # [s] between two corners of a driven path
 DASH = 0.12  # [m]
@@ -28,14 +28,15 @@ class Drives(Layer):
 
     def __init__(self) -> None:
         self._dashes: dict[RobotId, FloatArray] = {}  # (d, 2, 2) [m]
-        self._driven: dict[RobotId, FloatArray] = {}  # (c, 2) [m]
+        self._driven: dict[RobotId, list[Point]] = {}  # [m], by corner
+        self._steps: dict[RobotId, int] = {}  # of the trail interval, where the last corner was
         self._planned: dict[RobotId, FloatArray] = {}  # (c, 2) [m] of those that bend
         self._ended: set[RobotId] = set()
         self._errands: set[RobotId] = set()  # those whose dashes lead to no event
         self._elsewhere = False  # whether any such are drawn
         self._straight_rows: list[tuple[Moment, list[FloatArray]]] = []
         self._errand_rows: list[tuple[Moment, list[FloatArray]]] = []
-        self._driven_rows: list[tuple[Moment, list[FloatArray]]] = []
+        self._driven_rows: list[tuple[Moment, list[tuple[list[Point], int]]]] = []
         self._planned_rows: list[tuple[Moment, list[FloatArray]]] = []
 
     def run_started(self, state: FleetState) -> None:
@@ -63,7 +64,8 @@ class Drives(Layer):
             self._draw_planned(at)
         (self._errands.add if trip.errand else self._errands.discard)(robot)
         self._dashes[robot] = dashes(trip.origin, trip.site, DASH * self._state.mark / 0.1)
-        self._driven[robot] = np.array([trip.origin])
+        self._driven[robot] = [trip.origin]
+        self._steps[robot] = 0
         self._draw_straight(at)
         self._draw_driven(at)
 
@@ -73,23 +75,21 @@ class Drives(Layer):
         self._draw_planned(at)
 
     def moved(self, at: Moment, samples: FloatArray) -> None:
-        """The driven path grows."""
-        for robot, trip in self._state.under_way.items():
-            mine = samples[samples[:, 0] == robot]
-            if not len(mine):
-                continue
-            step = np.floor((mine[:, 1] - trip.departed) / TRAIL_INTERVAL)
-            corners = np.flatnonzero(np.diff(step, append=np.inf))
-            drawn = self._driven[robot]
-            path = np.concatenate([drawn, mine[corners, 2:4]])
-            self._driven[robot] = path
-            for k, time in enumerate(mine[corners, 1].tolist(), len(drawn) + 1):
-                others = [p for r, p in self._driven.items() if r != robot]
-                self._driven_rows.append((at.later(time), [*others, path[:k]]))
+        """The driven path grows by a corner every so often."""
+        under_way = self._state.under_way
+        for robot, time, x, y in samples[:, :4].tolist():
+            step = int((time - under_way[robot].departed) / TRAIL_INTERVAL)
+            if step != self._steps[robot]:
+                self._steps[robot] = step
+                self._driven[robot].append((x, y))
+                self._draw_driven(at.later(time))
 
     def trip_ended(self, at: Moment, event: int, trip: TripEnd) -> None:
         """It stays in sight until the next event."""
         self._ended.add(trip.robot)
+        if self._driven[trip.robot][-1] != trip.end:
+            self._driven[trip.robot].append(trip.end)
+            self._draw_driven(at)
 
     def send(self, sink: Sink) -> None:
         """Dashes and trails."""
@@ -108,7 +108,7 @@ class Drives(Layer):
                     [sum(map(len, row)) for row in rows],
                 ),
             )
-        for path, drawn in ((PLANNED, self._planned_rows), (DRIVEN, self._driven_rows)):
+        for path, drawn in ((PLANNED, self._planned_rows), (DRIVEN, self._snapshots())):
             if not drawn:
                 continue
             when, rows = zip(*drawn, strict=True)
@@ -138,7 +138,14 @@ class Drives(Layer):
         self._planned_rows.append((at, list(self._planned.values())))
 
     def _draw_driven(self, at: Moment) -> None:
-        self._driven_rows.append((at, list(self._driven.values())))
+        ways = [(way, len(way)) for way in self._driven.values()]
+        self._driven_rows.append((at, ways))
+
+    def _snapshots(self) -> list[tuple[Moment, list[FloatArray]]]:
+        """The rows of driven paths: of each path the corners that it had by then."""
+        whole = {id(way): way for _, row in self._driven_rows for way, _ in row}
+        corners = {name: np.array(way) for name, way in whole.items()}
+        return [(at, [corners[id(way)][:k] for way, k in row]) for at, row in self._driven_rows]
 
 
 def dashes(origin: tuple[float, float], site: tuple[float, float], dash: float) -> FloatArray:

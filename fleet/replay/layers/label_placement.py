@@ -32,6 +32,7 @@ class LabelPlacement:
             (0.5 * width, -side, 4.0 * side, 2.0 * side),
         ]
         self._taken: list[Box] = []
+        self._shapes: dict[int, FloatArray] = {}  # of labels, by their letters
         self._robots = np.empty((0, 2))
 
     def clear(self, robots: ArrayLike = ()) -> None:
@@ -50,27 +51,34 @@ class LabelPlacement:
         and of what is beside the floor; of several such, where it hides the fewest robots.
         """
         side = self._side
-        width, height = LETTER * side * letters, LINE * side
-        up, beside = AWAY * side, AWAY * side + 0.5 * width
-        choices = np.array(
-            [
-                (x + dx, y + dy, width, height)
-                for dx, dy in (
-                    (0.0, up), (0.0, -up), (beside, 0.0), (-beside, 0.0),
-                    (0.6 * beside, 1.4 * up), (-0.6 * beside, 1.4 * up),
-                    (0.6 * beside, -1.4 * up), (-0.6 * beside, -1.4 * up),
-                    (0.0, 2.4 * up), (0.0, -2.4 * up),
-                    (0.6 * beside, 2.4 * up), (-0.6 * beside, 2.4 * up),
-                    (0.6 * beside, -2.4 * up), (-0.6 * beside, -2.4 * up),
-                )
-            ]
-        )  # fmt: skip
+        choices = self._around(letters) + np.array((x, y, 0.0, 0.0))
         others = [box for box in self._taken if (box[0], box[1]) != (x, y)]
         covered = self._covered(choices, np.array(others).reshape(-1, 4))
         free = choices[covered == covered.min()]
         best = tuple(free[np.argmin(self._hidden(free))].tolist())
         self._taken.append(best)
         return best[0], best[1] + HANG * side
+
+    def _around(self, letters: int) -> FloatArray:
+        """Boxes (k, 4) of a label of so many letters, around the origin."""
+        if letters not in self._shapes:
+            side = self._side
+            width, height = LETTER * side * letters, LINE * side
+            up, beside = AWAY * side, AWAY * side + 0.5 * width
+            self._shapes[letters] = np.array(
+                [
+                    (dx, dy, width, height)
+                    for dx, dy in (
+                        (0.0, up), (0.0, -up), (beside, 0.0), (-beside, 0.0),
+                        (0.6 * beside, 1.4 * up), (-0.6 * beside, 1.4 * up),
+                        (0.6 * beside, -1.4 * up), (-0.6 * beside, -1.4 * up),
+                        (0.0, 2.4 * up), (0.0, -2.4 * up),
+                        (0.6 * beside, 2.4 * up), (-0.6 * beside, 2.4 * up),
+                        (0.6 * beside, -2.4 * up), (-0.6 * beside, -2.4 * up),
+                    )
+                ]
+            )  # fmt: skip
+        return self._shapes[letters]
 
     def _covered(self, choices: FloatArray, others: FloatArray) -> FloatArray:
         """The area [m²] that each of these boxes (k, 4) has in common with ``others`` (j, 4)."""

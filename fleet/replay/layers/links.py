@@ -157,10 +157,10 @@ class Links(Layer):
         n, base = self._state.n, self._base
         robots = sorted({robot for change in changes for robot in change.places})
         places = np.empty((len(changes), len(robots), 2))
-        now = base[robots]
+        now, row = base[robots], {robot: j for j, robot in enumerate(robots)}
         for k, change in enumerate(changes):
             for robot, place in change.places.items():
-                now[robots.index(robot)] = place
+                now[row[robot]] = place
             places[k] = now
         if self._disc:
             fixed = self._udg[~touching(self._udg, n, robots)]
@@ -182,7 +182,8 @@ class Links(Layer):
         """Links that the run tells of: those that nothing is told of stay as they are."""
         touched = np.unique(np.concatenate([codes for change in changes for codes in change]))
         fixed = without(before, touched)
-        fixed = fixed[~touching(fixed, self._state.n, robots)]
+        if robots:
+            fixed = fixed[~touching(fixed, self._state.n, robots)]
         now = set(without(before, fixed).tolist())
         varying = []
         for new, gone in changes:
@@ -211,8 +212,8 @@ def _nothing(at: Moment) -> Relinking:
 
 
 def _sorted(changes: Changes) -> tuple[Codes, Codes]:
-    new, gone = changes
-    return np.sort(np.array(new, np.intp)), np.sort(np.array(gone, np.intp))
+    new, gone = (np.sort(np.array(part, np.intp)) if part else NONE for part in changes)
+    return new, gone
 
 
 def _send_links(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,18 +29,21 @@ def of_movers(
     The others are at ``base`` (n, 2) [m], as for :func:`in_reach`.
     """
     n, k = len(base), len(places)
-    everybody = np.broadcast_to(base, (k, n, 2)).copy()
-    everybody[:, movers] = places
-    codes: list[list[Codes]] = [[] for _ in range(k)]
+    if not len(movers):
+        return [np.empty(0, np.intp)] * k
+    keys = []
     for j, mover in enumerate(movers):
-        away = everybody - places[:, j, None]
-        near = np.einsum("kni,kni->kn", away, away) <= reach * reach
+        x, y = places[:, j, 0, None], places[:, j, 1, None]
+        near = (base[:, 0] - x) ** 2 + (base[:, 1] - y) ** 2 <= reach * reach
+        near[:, movers] = (places[..., 0] - x) ** 2 + (places[..., 1] - y) ** 2 <= reach * reach
         near[:, mover] = False
         moment, other = np.nonzero(near)
         code = np.minimum(other, mover) * n + np.maximum(other, mover)
-        for at, part in enumerate(np.split(code, np.searchsorted(moment, np.arange(1, k)))):
-            codes[at].append(part)
-    return [np.unique(np.concatenate([np.empty(0, np.intp), *parts])) for parts in codes]
+        keys.append(moment * (n * n) + code)
+    found = np.sort(keys[0]) if len(keys) == 1 else np.unique(np.concatenate(keys))
+    moment, code = np.divmod(found, n * n)
+    bounds = np.searchsorted(moment, np.arange(k + 1)).tolist()
+    return [code[a:b] for a, b in pairwise(bounds)]
 
 
 def squared(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -14,7 +14,8 @@ from PIL import Image
 
 from fleet.replay import scheme
 from fleet.replay.chart_figure import chart
-from fleet.replay.comparison import Aim, arrange, difference, framed
+from fleet.replay.comparison import Aim, arrange, framed, names
+from fleet.replay.parting import parting
 from fleet.replay.readback import Recording
 from fleet.replay.table_files import export_tables
 from fleet.replay.web_server import Part, serving
@@ -83,15 +84,47 @@ def test_two_runs_part_where_their_winners_do(rounds, tmp_path):
         for run in (rounds, other)
     ]
     parted = next(e for e in winners[0] if winners[0][e] != winners[1].get(e))
-    text = difference(rounds.recording, other.recording)
-    assert text.startswith(f"## They part at event {parted + 1}\n")
-    assert difference(rounds.recording, rounds.recording).startswith("## They never part")
+    found = parting(rounds.recording, other.recording)
+    assert found.parted == parted + 1
+    talks = [
+        [
+            (s.transmission.kind, s.transmission.sender, s.heard)
+            for s in run.witness.said
+            if s.event == e
+        ]
+        for e in range(found.said)
+        for run in (rounds, other)
+    ]
+    assert all(a == b for a, b in zip(talks[:-2:2], talks[1:-2:2], strict=True))
+    assert talks[-2] != talks[-1]
+    for k, run in enumerate((rounds, other)):
+        later = [t.energy for e, t, _ in run.witness.trips if e.id >= parted]
+        assert found.energy[k] == pytest.approx(sum(later))
+        assert found.messages[k] == sum(line.event >= parted for line in run.witness.said)
+    assert f"## They part at event {parted + 1}\n" in found.markdown()
+    alike = parting(rounds.recording, rounds.recording)
+    assert (alike.parted, alike.said, alike.ends, alike.energy) == (None, None, [], (0.0, 0.0))
+    assert alike.markdown().startswith("## They never part")
     arrange([rounds.path, other.path], tmp_path / "both.rrd")
     both = Recording(tmp_path / "both.rrd")
     for root, run in (("a", rounds), ("b", other)):
         mean = both.rows(f"{root}/{scheme.COMPARED_ENERGY}", "Scalars:scalars").values
         own = run.recording.rows(scheme.FLEET_ENERGY, "Scalars:scalars").values
         assert [v[0] for v in mean] == pytest.approx([v[0] for v in own])
+    for path, counted in (
+        (scheme.DIFFERENCE_ENERGY, lambda run, e: sum(
+            t.energy for event, t, _ in run.witness.trips if event.id < e)),
+        (scheme.DIFFERENCE_MESSAGES, lambda run, e: sum(s.event < e for s in run.witness.said)),
+    ):  # fmt: skip
+        rows = both.rows(f"{path}/b", "Scalars:scalars")
+        assert len(rows.values) > 5
+        for round_, value in zip(rows.moments[scheme.ROUND].tolist(), rows.values, strict=True):
+            more = counted(other, round_) - counted(rounds, round_)
+            assert value[0] == pytest.approx(more, abs=1e-6)
+    assert names([rounds.recording, other.recording]) == [
+        f"{p} · random-hole · straight · seed 12" for p in ("rfta2", "rfta1")
+    ]
+    assert len(set(names([rounds.recording, rounds.recording, other.recording]))) >= 2
 
 
 def test_an_event_or_a_robot_is_framed(rounds):

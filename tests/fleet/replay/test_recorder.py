@@ -300,3 +300,25 @@ def test_the_planned_way_is_drawn_where_it_bends(tmp_path):
             straight += 1
     assert bent > 3
     assert straight > 3
+
+
+def test_the_summary_is_printed_before_the_drawing_is_awaited(tmp_path, monkeypatch, capfd):
+    """Whoever waits for the summary alone need not wait for the picture."""
+    from fleet.cli import main
+    from fleet.replay.writer_process import WriterProcess
+
+    told = []
+    finish = WriterProcess.finish
+
+    def slow(self):
+        told.append(capfd.readouterr().out)
+        finish(self)
+
+    monkeypatch.setattr(WriterProcess, "finish", slow)
+    path = tmp_path / "run.rrd"
+    arguments = ["run", "--motion", "straight", "--rounds", "2", "--rrd", str(path)]
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 0
+    assert "2 rounds" in told[0]
+    assert capfd.readouterr().out.startswith(f"\nRecorded to {path}")
