@@ -38,4 +38,4 @@ def main(out: str = "out/study-in-python", seeds: int = 20) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:2])
+    main(*sys.argv[1:2], *map(int, sys.argv[2:3]))

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
@@ -18,12 +20,13 @@ def said_by(name, *arguments):
 
 
 def test_the_study_in_python_runs_and_goes_on(tmp_path):
-    texts = [said_by("study_in_python.py", tmp_path / "out") for _ in range(2)]
+    texts = [said_by("study_in_python.py", tmp_path / "out", 6) for _ in range(2)]
     assert texts[0] == texts[1]
     assert texts[0].count("95 % CI") == 6
     assert "at 3.0 m rfta2 lives +" in texts[0]
 
 
+@pytest.mark.slow
 def test_rfta3_lives_longer_beside_rfta2(tmp_path):
     text = said_by("rfta3_beside_rfta2.py", tmp_path)
     rounds = {name: int(n) for name, n in re.findall(r"^(rfta\d) +(\d+)", text, re.MULTILINE)}

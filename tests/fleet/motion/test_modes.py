@@ -57,8 +57,14 @@ def same(one, two):
     assert np.array_equal(one[2], two[2])
 
 
-@pytest.mark.parametrize("traffic", ["reserved", "free"])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    ("seed", "traffic"),
+    [
+        *((seed, "reserved") for seed in range(3)),
+        (0, "free"),
+        *(pytest.param(seed, "free", marks=pytest.mark.slow) for seed in (1, 2)),
+    ],
+)
 def test_the_bridge_and_the_public_interface_agree(crowd, seed, traffic):
     few = {"movers": 6, "tasks": 6} if traffic == "free" else {"movers": 20}
     keys = {"engine": True, "interval": 0.2, "traffic": traffic, **few}

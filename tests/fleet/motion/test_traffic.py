@@ -112,7 +112,7 @@ def test_reserved_robots_never_touch(crowd, spec, movers, engine):
     st.sampled_from([0.0, 0.05]),
     st.booleans(),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_whatever_happens_nothing_sinks_in_and_nothing_is_lost(
     crowd, seed, radius, arena, drive, acceleration, reverse, capacity, halts, engine
 ):
@@ -131,7 +131,7 @@ def test_whatever_happens_nothing_sinks_in_and_nothing_is_lost(
     st.sampled_from([None, *ARENAS]),
     st.sampled_from([1.0, 1e4]),
 )
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=4, deadline=None)
 def test_in_free_traffic_bodies_touch_but_hardly_sink_in(crowd, seed, radius, arena, acceleration):
     spec = replace(SMALL, radius=radius, acceleration=acceleration)
     motion, robots, rng = crowd(40, seed, spec, arena, engine=True, traffic="free")
