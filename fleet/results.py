@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from math import fsum, sqrt
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fleet.fleet import Fleet
 from fleet.radio import AirCounts
@@ -12,6 +12,9 @@ from fleet.service import StreamFigures, never_served, stream_figures
 from fleet.tally import Tally
 from fleet.tasks import OPEN, State, TaskBook
 from protocols.messages import KINDS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Ending = Literal[
     "rounds played",  # as many as were asked for
@@ -91,6 +94,18 @@ class Summary:
         if self.stream is None:
             del described["stream"]
         return described
+
+    def plot(self) -> Figure:
+        """What the energy went into [J], and what was said: a figure, which a notebook shows."""
+        from fleet.summary_figure import draw
+
+        return draw(self)
+
+    def _repr_html_(self) -> str:
+        """The table of ``fleet run``, in a notebook."""
+        from fleet.summary_lines import as_html
+
+        return as_html(self)
 
 
 class PlayedRun(NamedTuple):

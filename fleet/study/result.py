@@ -10,6 +10,7 @@ The same lines open a table wherever it is wanted::
 from __future__ import annotations
 
 from collections.abc import Iterator
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from fleet.study.parquet import bring_up_to_date, runs_table, side_table
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from matplotlib.figure import Figure
 
 
 class StudyResult:
@@ -33,6 +35,36 @@ class StudyResult:
     def __repr__(self) -> str:
         total, done, failed = self.counts()
         return f"<StudyResult {str(self.folder)!r}: {done} of {total} runs done, {failed} failed>"
+
+    def _repr_html_(self) -> str:
+        """How far it has come, and the means with their intervals, in a notebook."""
+        from fleet.study.report.overview import table
+
+        return f"<p>{escape(repr(self))}</p>{table(self.folder)}"
+
+    def plot(self, *measures: str) -> Figure:
+        """The means with their 95 % intervals, of these columns or of the first few that vary.
+
+        Of the first combination of what is neither on the abscissa nor a colour; a notebook shows
+        the figure, and its ``savefig`` writes it.
+
+        Raises:
+            BadInput: no run is done, or a measure is not there.
+        """
+        from fleet.study.report.overview import figure
+
+        return figure(self.folder, measures)
+
+    def report(self, out: str | Path | None = None) -> Path:
+        """Write ``report.html`` into the folder, or into ``out``; its path.
+
+        Raises:
+            BadInput: the page cannot be written, or the study's ``[report]`` asks for what is
+                not there.
+        """
+        from fleet.study.report.study_report import write_report
+
+        return write_report(self.folder, None if out is None else Path(out))
 
     def counts(self) -> Counts:
         """How many runs there are to be, are done, and came to nothing."""
