@@ -50,7 +50,7 @@ CHECKS = {
 COUNTS = {
     "relayed": "every bid is relayed by itself",
     "aggregated": "a neighbour passes on the best bid that it has heard",
-    "outbid": "besides, only those bid that outbid whom they heard the call from",
+    "outbid": "aggregated, and only those bid that outbid whom they heard the call from",
 }
 
 

@@ -40,12 +40,30 @@ def derived(runs: Runs) -> Runs:
     return replace(runs, columns={**new, **there})
 
 
+def with_deaths(runs: Runs, rounds: Runs) -> Runs:
+    """The runs with how many events were served before the first robot died on its way.
+
+    ``rounds`` is the study's table of that name. Where none died it is all that were served.
+    """
+    if not len(runs) or not {"key", "outcome"} <= rounds.columns.keys():
+        return runs
+    served: dict[str, float] = dict.fromkeys(runs["key"].tolist(), 0.0)
+    dead: set[str] = set()
+    for key, outcome in zip(rounds["key"].tolist(), rounds["outcome"].tolist(), strict=True):
+        if outcome == "battery empty":
+            dead.add(key)
+        elif outcome == "arrived" and key not in dead:
+            served[key] = served.get(key, 0.0) + 1.0
+    before = np.array([served[key] for key in runs["key"].tolist()])
+    return replace(runs, columns={**runs.columns, "before_death": before})
+
+
 def measurable() -> list[str]:
     """The columns that runs of scenarios may have, but for those that name a kind or a reason."""
     own = [f.name for f in fields(Summary) if f.name not in TABLES]
     streams = [f"stream_{f.name}" for f in fields(StreamFigures)]
-    return [*own, *streams, "messages_per_event", "served_share", "drained_per_served",
-            "predicted_per_served"]  # fmt: skip
+    return [*own, *streams, "before_death", "messages_per_event", "served_share",
+            "drained_per_served", "predicted_per_served"]  # fmt: skip
 
 
 def is_measurable(name: str) -> bool:

@@ -12,6 +12,7 @@ from fleet.study.report.runs import Runs
 
 MEASURES = {
     "lifetime": "lifetime [events served]",
+    "before_death": "served before a robot died on its way [events]",
     "stream_response_mean": "response time, mean [s]",
     "stream_response_p90": "response time, 90 % below [s]",
     "stream_within_deadline": "reached by the deadline [share]",

@@ -22,7 +22,7 @@ from fleet.study.report import estimate_figures as figures
 from fleet.study.report import estimate_tables as tables
 from fleet.study.report import estimates
 from fleet.study.report.conditions import conditions
-from fleet.study.report.derived import PER_SERVED, accounts, derived, uncensored
+from fleet.study.report.derived import PER_SERVED, accounts, derived, uncensored, with_deaths
 from fleet.study.report.layout import Layout, layout
 from fleet.study.report.page import write_page
 from fleet.study.report.quantities import measures, name_of, short_name
@@ -91,7 +91,9 @@ def _write(folder: Path, path: Path) -> Path:
     with reading(folder) as ledger:
         meta, counts, failures = ledger.meta(), ledger.counts(), ledger.failures()
         runs = derived(runs_of(runs_table(ledger.rows()), ledger.labels()))
-        robots = _robots(ledger)
+        robots, rounds = _side(ledger, "robots"), _side(ledger, "rounds")
+    if rounds is not None:
+        runs = with_deaths(runs, rounds)
     _bring_up_to_date(folder)
     beside = path.parent / "report"
     beside.mkdir(parents=True, exist_ok=True)
@@ -289,11 +291,11 @@ def _drawn(
         yield Shown(number.next(), said + more, inline(svg), f"report/{name}.svg")
 
 
-def _robots(ledger: Ledger) -> Runs | None:
-    """The table of robots with the axes of the study, if there is one."""
-    if "robots" not in ledger.table_names():
+def _side(ledger: Ledger, name: str) -> Runs | None:
+    """A table beside the runs with the axes of the study, if there is one."""
+    if name not in ledger.table_names():
         return None
-    return runs_of(side_table(ledger, "robots"), ledger.labels())
+    return runs_of(side_table(ledger, name), ledger.labels())
 
 
 def _design(runs: Runs) -> list[tuple[str, str]]:
