@@ -12,6 +12,7 @@ from fleet.cli.exits import say
 from fleet.cli.resuming import conclude, progress, resumable, this_command
 
 if TYPE_CHECKING:
+    from fleet.experiments.energy.settings import Subject
     from fleet.logs.asking import LogSettings
     from fleet.logs.judging import Judgement
 
@@ -38,12 +39,15 @@ def _log_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @click.command("energy")
-@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOG]...")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path),
+                metavar="[SCENARIO|LOG...]")  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), required=True,
               help="Folder for results and report. What is there is not run again.")  # fmt: skip
 @click.option("--quick", is_flag=True, help="A small part of it, on the open floor alone.")
 @click.option("--seed", type=click.IntRange(min=0), default=0,
               help="The first seed of placements and networks.  [0]")  # fmt: skip
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE",
+              help="Set any key of the scenario, such as robot.mass=20. Repeatable.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.  [all cores]")
 @_log_options
 def command(
@@ -51,6 +55,7 @@ def command(
     out: Path,
     quick: bool,
     seed: int,
+    settings: tuple[str, ...],
     workers: int | None,
     logs: tuple[Path, ...],
     **told: Any,
@@ -62,11 +67,15 @@ def command(
     with figures (PNG, SVG) and their numbers (CSV) in OUT/figures. Interrupted and run again,
     it goes on where it was.
 
+    With a SCENARIO file, or --set, the robots, floor and motion are those of the scenario, not the
+    paper's.
+
     With --log, the trips are those of a real robot. A file is a run, a folder is a ground; what is
     told by options can also stand in a log.toml beside the files. Writes OUT/report.html,
     OUT/preset.toml (a robot for scenarios), OUT/trips.csv and OUT/windows.csv.
     """
     if logs:
+        _only_without_log(settings)
         _judge_logs((*logs, *paths), out, told)
         return
     _only_with_log(paths, told)
@@ -76,7 +85,7 @@ def command(
     with resumable():
         results, page = energy_study(
             out, progress, size=QUICK if quick else FULL, seed=seed, workers=workers, say=say,
-            command=this_command(),
+            command=this_command(), subject=_subject(paths, settings),
         )  # fmt: skip
         click.echo(f"Report: {page}")
         for result in results:
@@ -84,11 +93,31 @@ def command(
                 conclude(result)
 
 
+def _subject(paths: tuple[Path, ...], settings: tuple[str, ...]) -> Subject | None:
+    """Of the user's scenario; None: the paper's."""
+    if not paths and not settings:
+        return None
+    from fleet.experiments.energy.own_subject import own_subject
+    from fleet.scenario.loading import load_scenario
+
+    return own_subject(load_scenario(paths[0] if paths else None, {}, settings))
+
+
+def _only_without_log(settings: tuple[str, ...]) -> None:
+    from fleet.scenario.errors import bad
+
+    if settings:
+        raise bad("--set", "says something of a scenario; a log has none")
+
+
 def _only_with_log(paths: tuple[Path, ...], told: dict[str, Any]) -> None:
     from fleet.scenario.errors import bad
 
-    if paths:
-        raise bad(str(paths[0]), "is no option; logs of a real robot are given with --log")
+    if len(paths) > 1:
+        raise bad(str(paths[1]), "is one file too many; logs of a real robot are given with --log")
+    if paths and paths[0].suffix != ".toml":
+        said = "is no scenario, which ends in .toml; logs of a real robot are given with --log"
+        raise bad(str(paths[0]), said)
     for name, value in told.items():
         if value not in ((), None):
             option = "log-column" if name == "columns" else name

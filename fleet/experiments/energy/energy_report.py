@@ -17,7 +17,7 @@ from fleet.experiments.energy.exhibits import Exhibit
 from fleet.experiments.energy.findings import details, findings, on_bids, on_closure, verdict
 from fleet.experiments.energy.lives import lives
 from fleet.experiments.energy.models import CORRECTED, LINE, fit
-from fleet.experiments.energy.settings import ENGINE, NO_INERTIA, PAPER
+from fleet.experiments.energy.settings import NO_INERTIA, Subject
 from fleet.experiments.energy.trip_table import TripTable
 from fleet.study.report.page import write_page
 from fleet.study.report.style import in_style, saved
@@ -45,6 +45,7 @@ def write_report(
     lived: TripTable,
     rows: Sequence[Mapping[str, Any]],
     command: str,
+    subject: Subject,
 ) -> Path:
     """Write ``report.html``, and each figure as PNG, SVG and CSV into ``figures/``.
 
@@ -55,27 +56,27 @@ def write_report(
     whole = [row for row in rows if row["part"] == "lifetime"]
     robots = [row for row in rows if row["part"] == "headline"]
     listed = lives(whole)
-    found = findings(single, streams, lived, listed)
-    paper = single.where(setting=PAPER).arrived()
+    found = findings(single, streams, lived, listed, subject)
+    paper = single.where(setting=subject.name).arrived()
     with in_style("energy"):
         shown = [
-            trip_exhibits.by_distance(paper, fit(LINE, paper)),
-            preset_exhibit.by_preset(single),
-            trip_exhibits.by_part(paper),
+            trip_exhibits.by_distance(paper, fit(LINE, paper), subject),
+            *([preset_exhibit.by_preset(single)] if not subject.base else []),
+            trip_exhibits.by_part(paper, subject),
             trip_exhibits.by_model(paper),
-            trip_exhibits.by_setting(single),
-            fleet_exhibits.by_protocol(lived, fit(CORRECTED, paper)),
-            fleet_exhibits.in_traffic(streams),
+            trip_exhibits.by_setting(single, subject),
+            fleet_exhibits.by_protocol(lived, fit(CORRECTED, paper), subject.places),
+            *([fleet_exhibits.in_traffic(streams)] if subject.traffic else []),
             fleet_exhibits.lifetimes(listed),
             fleet_exhibits.differences(listed),
             sensitivity.choices(whole),
-            sensitivity.headlines(robots),
+            *([sensitivity.headlines(robots)] if subject.headlines else []),
         ]
         figures = {exhibit.name: _saved(exhibit, folder) for exhibit in shown}
     said = {
         "parts": on_closure(found),
-        "settings": on_engine(single),
-        "differences": on_bids(listed),
+        "settings": on_engine(single, subject),
+        "differences": on_bids(listed, subject.places[0].name),
         "choices": sensitivity.on_choices(whole),
         "headlines": sensitivity.on_headlines(robots),
     }
@@ -88,21 +89,30 @@ def write_report(
         exhibits=[(exhibit, figures[exhibit.name]) for exhibit in shown],
         said={exhibit.name: said.get(exhibit.name, "") for exhibit in shown},
         titles=TITLES,
+        subject=subject,
+        rate=subject.spec.power.per_metre(subject.spec.cruise),
         command=command,
         made_by=environment(),
     )
 
 
-def on_engine(single: TripTable) -> str:
+def on_engine(single: TripTable, subject: Subject) -> str:
     """How far bodies pushed by forces are from the prediction, and the control."""
-    foreseen, driven = (single.where(setting=name) for name in (PAPER, ENGINE.name))
+    names = (subject.name, subject.engine.name)
+    if subject.motion == "physics":
+        names = names[::-1]
+    foreseen, driven = (single.where(setting=name) for name in names)
     if not len(driven) or len(foreseen) != len(driven):
         return ""
+    both = (foreseen["outcome"] == "arrived") & (driven["outcome"] == "arrived")
+    if not both.any():
+        return ""
+    foreseen, driven = foreseen.take(both), driven.take(both)
     gap = abs(driven["drained"] / foreseen["drained"] - 1.0)
     said = (
         f"Pushed by forces in pymunk, robots drain what was foreseen within"
         f" {100.0 * gap.mean():.3f} % on average and {100.0 * gap.max():.2f} % at most, over"
-        f" {len(driven):,} trips of the paper’s robot."
+        f" {len(driven):,} trips of the robot in which nothing is varied."
     )
     control = single.where(setting=NO_INERTIA).arrived()
     if not len(control):

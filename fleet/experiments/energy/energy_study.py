@@ -10,10 +10,11 @@ from fleet.experiments.energy.energy_report import write_report
 from fleet.experiments.energy.models import CORRECTED, fit
 from fleet.experiments.energy.settings import (
     FULL,
-    PAPER,
     Size,
+    Subject,
     headlines,
     lifetimes,
+    papers,
     single_tasks,
     streams,
 )
@@ -34,24 +35,31 @@ def energy_study(
     workers: int | None = None,
     say: Say = silent,
     command: str = "fleet energy",
+    subject: Subject | None = None,
 ) -> tuple[list[StudyResult], Path]:
     """Run what is left of the study into ``out``, and write its report.
 
     Single tasks and streams are in ``out/trips``; the corrected model is fitted on them.
     Lifetimes, in ``out/lifetimes``, are lived with it. Returns both, and the path of the page.
+    ``subject`` is the paper's if it is not given.
+
     Raises what :func:`fleet.study.runner.run_jobs` raises.
     """
-    meta = {"command": command}
+    meta, subject = {"command": command}, subject or papers()
+    crowds = streams(size, seed) if subject.traffic else ()
     with watch("trips") as progress:
         driven = run_jobs(
-            [*single_tasks(size, seed), *streams(size, seed)], out / "trips",
+            [*single_tasks(size, seed, subject), *crowds], out / "trips",
             workers=workers, progress=progress, say=say, meta=meta,
         )  # fmt: skip
     trips = TripTable.of(driven.table("trips"))
     single, streamed = trips.where(part="single"), trips.where(part="stream")
     with watch("lifetimes") as progress:
         lived = run_jobs(
-            [*lifetimes(size, seed, launch_costs(single)), *headlines(size, seed)],
+            [
+                *lifetimes(size, seed, launch_costs(single), subject),
+                *headlines(size, seed, subject),
+            ],
             out / "lifetimes",
             workers=workers, progress=progress, say=say, meta=meta,
         )  # fmt: skip
@@ -62,6 +70,7 @@ def energy_study(
         TripTable.of(lived.table("trips")),
         list(lived.rows()),
         command,
+        subject,
     )
     return [driven, lived], page
 
@@ -69,9 +78,7 @@ def energy_study(
 def launch_costs(single: TripTable) -> Mapping[str, float]:
     """What a launch costs in each setting [J], beyond Eq. (1) on the planned path."""
     there = [str(name) for name in dict.fromkeys(single["setting"].tolist())]
-    found = {
+    return {
         name: fit(CORRECTED, single.where(setting=name).arrived()).coefficients[0].value
         for name in there
     }
-    assert PAPER in found, "no single task in the paper's setting was run"
-    return found

@@ -17,11 +17,10 @@ from fleet.experiments.energy.settings import (
     AS_IN_THE_PAPER,
     HUSKIES,
     OPEN,
-    PAPER,
     PROTOCOLS,
+    Subject,
 )
 from fleet.experiments.energy.trip_table import TripTable, closure
-from fleet.robot import RobotSpec
 from fleet.study.statistics import Interval
 
 WORLDS = ("pit", "rooms", "warehouse")  # with things to drive around
@@ -38,7 +37,8 @@ CLOSED = 1e-3  # share of its energy that a trip's parts may leave unexplained
 class Findings:
     """The study in a few numbers. Ratios are of what was drained to what Eq. (1) says."""
 
-    paper: Linearity  # of single trips of the paper's robot
+    paper: Linearity  # of single trips of the robot in which nothing is varied
+    floor: str  # over which they went, as it is said
     skid: Linearity | None  # of a robot that steers by skidding
     longest: float  # that was driven [m]
     asked: Interval  # ratio over the trips of lifetimes on the open floor
@@ -58,15 +58,20 @@ class Findings:
 
 
 def findings(
-    single: TripTable, streams: TripTable, lived: TripTable, listed: Sequence[Life]
+    single: TripTable,
+    streams: TripTable,
+    lived: TripTable,
+    listed: Sequence[Life],
+    subject: Subject,
 ) -> Findings:
     """From the trips of single tasks, streams and lifetimes, and the lifetimes themselves."""
-    paper = single.where(setting=PAPER).arrived()
+    paper = single.where(setting=subject.name).arrived()
     skid = single.where(setting=HUSKIES).arrived()
-    asked = lived.where(place=OPEN).arrived()
+    asked = lived.where(place=subject.places[0].name).arrived()
     long = single.take(single["straight"] >= LONG).arrived()
     return Findings(
         paper=linearity(paper),
+        floor=subject.floor,
         skid=linearity(skid) if len(skid) else None,
         longest=float(paper["straight"].max()),
         asked=ratio_interval(asked["drained"], asked.eq1, asked["seed"]),
@@ -75,7 +80,7 @@ def findings(
         by_protocol=_ratios({name: asked.where(protocol=name) for name in PROTOCOLS}),
         by_world=_ratios({name: long.where(setting=name) for name in WORLDS}),
         launch=fit(CORRECTED, paper).coefficients[0],
-        launch_formula=launch_cost(RobotSpec()),
+        launch_formula=launch_cost(subject.spec),
         corrected=held_out(CORRECTED, paper)[1],
         eq1=held_out(EQ1, paper)[1],
         asked_corrected=accuracy(asked["drained"], fit(CORRECTED, paper).predict(asked)),
@@ -98,7 +103,7 @@ def verdict(found: Findings) -> str:
     one = found.paper
     line = f"a line of its own, {one.intercept.value:.1f} J and {one.slope.value:.1f} J a metre,"
     return (
-        f"Energy is {_kind(one)}. Eq. (1) has no intercept: over an open floor"
+        f"Energy is {_kind(one)}. Eq. (1) has no intercept: over {found.floor}"
         f" {_usable(one.within_10, 'a tenth', found.longest)}, and"
         f" {_usable(one.within_5, 'a twentieth', found.longest)}; {line} is within"
         f" {100.0 * one.line_off:.0f} % at all lengths (R² {one.r2:.3f})."
@@ -155,10 +160,12 @@ def details(found: Findings) -> list[str]:
     )
     said = [
         by_protocol,
-        f"Among obstacles, trips of {LONG:g} m and more drained: {_listed(found.by_world)}.",
         left_out,
         corrected,
     ]
+    if found.by_world:
+        worlds = f"Among obstacles, trips of {LONG:g} m and more drained"
+        said.insert(1, f"{worlds}: {_listed(found.by_world)}.")
     if found.overrated:
         ratios = ", ".join(f"{name} {ratio:.2f}" for name, ratio in found.overrated.items())
         said.append(
@@ -168,11 +175,11 @@ def details(found: Findings) -> list[str]:
     return [sentence.replace("-", "−") for sentence in said]
 
 
-def on_bids(listed: Sequence[Life]) -> str:
-    """What bids by the corrected model are worth on the open floor."""
+def on_bids(listed: Sequence[Life], place: str = OPEN) -> str:
+    """What bids by the corrected model are worth in a place."""
     said, changes = [], []
     for protocol in PROTOCOLS:
-        base, other = (find(listed, OPEN, protocol, bids) for bids in (BASELINE, "corrected"))
+        base, other = (find(listed, place, protocol, bids) for bids in (BASELINE, "corrected"))
         if base is None or other is None:
             continue
         before, after = base.means, other.means
@@ -187,8 +194,8 @@ def on_bids(listed: Sequence[Life]) -> str:
     tried = [bids for bids in SOURCES if any(life.bids == bids for life in listed)]
     return (
         "Some robots set out and do not arrive, their battery being empty. If they bid by Eq. (1),"
-        f" and if by the corrected model, on the open floor: {'; '.join(said)}. The lifetime, up"
-        f" to the first event that nobody takes, changes by {min(changes):+.0f} % to"
+        f" and if by the corrected model, in the place “{place}”: {'; '.join(said)}. The lifetime,"
+        f" up to the first event that nobody takes, changes by {min(changes):+.0f} % to"
         f" {max(changes):+.0f} %. It is no measure of this: if a robot dies on its way another one"
         " is sent, and the event counts as served, so whoever takes a chance lives longer by it."
         f" Over all places and protocols {'; '.join(_changed(listed, bids) for bids in tried)}:"

@@ -13,7 +13,7 @@ from fleet.experiments.energy.accuracy import accuracy, ratio_interval
 from fleet.experiments.energy.exhibits import Column, Exhibit
 from fleet.experiments.energy.lives import BASELINE, MEASURES, Life, find
 from fleet.experiments.energy.models import Fit
-from fleet.experiments.energy.settings import AS_IN_THE_PAPER, OPEN, PLACES, PROTOCOLS, RATES
+from fleet.experiments.energy.settings import AS_IN_THE_PAPER, PROTOCOLS, RATES, Place
 from fleet.experiments.energy.trip_exhibits import PART_COLOURS
 from fleet.experiments.energy.trip_table import PARTS, TripTable
 from fleet.study.report.style import INK, MARKERS, SERIES, WIDTH
@@ -32,19 +32,20 @@ SAID = {
 }
 
 
-def by_protocol(trips: TripTable, corrected: Fit) -> Exhibit:
+def by_protocol(trips: TripTable, corrected: Fit, places: Sequence[Place]) -> Exhibit:
     """The trips that protocols really ask for."""
     rows = []
-    for place in PLACES:
+    fitted = places[0].name  # where the correction was
+    for place in places:
         here = trips.where(place=place.name).arrived()
-        for protocol in (*PROTOCOLS, *([ALL] if place.name == OPEN else [])):
+        for protocol in (*PROTOCOLS, *([ALL] if place.name == fitted else [])):
             some = here if protocol == ALL else here.where(protocol=protocol)
             if not len(some):
                 continue
             found, better = (
                 accuracy(some["drained"], said) for said in (some.eq1, corrected.predict(some))
             )
-            known = place.name == OPEN  # to the fit, which is of the open floor
+            known = place.name == fitted
             rows.append([
                 place.name, protocol, found.trips, float(np.mean(some["straight"])), found.drained,
                 found.bias, found.rmse, found.r2,
@@ -58,7 +59,7 @@ def by_protocol(trips: TripTable, corrected: Fit) -> Exhibit:
         " bidding by Eq. (1) on the straight line: what they drained beyond it, in % of it, and"
         " what for. Detours are less than nothing where robots stop short of sites that another"
         " one covers. Corrected is Eq. (1) on the planned path and a launch, fitted on the single"
-        " tasks of the open floor.",
+        f" tasks of the place “{fitted}”.",
         [
             Column("place"), Column("protocol"), Column("trips", ","),
             Column("straight distance, mean [m]", ".2f"), Column("drained, mean [J]", ".1f"),
@@ -249,7 +250,7 @@ def _contrasts(listed: Sequence[Life]) -> Figure:
     for number, name in enumerate(names):
         at -= 1.0 if number == 0 or name[0] == names[number - 1][0] else 1.5
         places[name] = at
-    figure = Figure(figsize=(WIDTH, 0.6 + 0.2 * len(names)))
+    figure = Figure(figsize=(WIDTH, max(1.8, 0.6 + 0.2 * len(names))))
     panels = figure.subplots(1, 3, sharey=True)
     for axes, (measure, title) in zip(panels, measures.items(), strict=True):
         for number, way in enumerate(BETTER):

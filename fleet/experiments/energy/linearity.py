@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from fleet.experiments.energy.accuracy import accuracy, usable_from, worst_bin
 from fleet.experiments.energy.models import LINE, fit, held_out
-from fleet.experiments.energy.settings import LONGEST
 from fleet.experiments.energy.trip_table import TripTable
 from fleet.study.statistics import Interval
 
@@ -39,7 +38,7 @@ def linearity(trips: TripTable) -> Linearity:
     intercept, slope = line.coefficients
     rate = float(trips["per_metre"][0])
     within = [
-        usable_from(intercept.value, slope.value, rate, share, LONGEST)
+        usable_from(intercept.value, slope.value, rate, share, float(trips["straight"].max()))
         for share in (TOLERABLE, 0.5 * TOLERABLE)
     ]
     return Linearity(

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fleet.assembly import run, streams
-from fleet.experiments.energy.settings import LONGEST, SHORTEST
+from fleet.experiments.energy.settings import SHORTEST
 from fleet.fleet import Fleet
 from fleet.motion import Motion, Trip
 from fleet.observer import Observer
@@ -33,8 +33,8 @@ Row = dict[str, Any]
 def drive_tasks(job: Job) -> Row:
     """So many trips, one after the other, of random robots of one random placement.
 
-    Straight distances are uniform from :data:`settings.SHORTEST` to :data:`settings.LONGEST`, in
-    all directions that stay on free floor. Who has arrived stays there.
+    Straight distances are uniform from :data:`settings.SHORTEST` to the ``longest`` that the job
+    says [m], in all directions that stay on free floor. Who has arrived stays there.
     """
     scenario = scenario_from(job.scenario["scenario"])
     world, random = make_world(scenario.world), streams(scenario.seed)
@@ -47,7 +47,7 @@ def drive_tasks(job: Job) -> Row:
         for id, (point, heading) in enumerate(zip(points, headings, strict=True))
     ]
     motion.place(robots)
-    errands = _errands(robots, ground, random["sites"])
+    errands = _errands(robots, ground, job.scenario["longest"], random["sites"])
     rows = [_driven(next(errands), motion, scenario.robot) for _ in range(job.scenario["tasks"])]
     return {"trips": len(rows), "tables": {"trips": rows}}
 
@@ -166,11 +166,11 @@ def row_of(trip: Trip, heading: float, drained: float, spec: RobotSpec) -> Row:
 
 
 def _errands(
-    robots: list[Robot], ground: Ground, rng: np.random.Generator
+    robots: list[Robot], ground: Ground, longest: float, rng: np.random.Generator
 ) -> Iterator[tuple[Robot, Point]]:
     """A robot and a free site at a random distance and in a random direction, again and again."""
     while True:
-        distance = float(rng.uniform(SHORTEST, LONGEST))
+        distance = float(rng.uniform(SHORTEST, longest))
         for _ in range(1000):
             robot = robots[int(rng.integers(len(robots)))]
             direction = float(rng.uniform(-pi, pi))

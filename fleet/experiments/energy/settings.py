@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fleet.robot import RobotSpec
+from fleet.scenario.loading import merged, scenario_from
 from fleet.study.job import Job
 
 DRIVE = "fleet.experiments.energy.measuring:drive_tasks"
@@ -126,15 +127,48 @@ PLACES = (
 )
 
 
-def single_tasks(size: Size, seed: int) -> Iterator[Job]:
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Whose energy is studied: a scenario, and everything that is varied in it."""
+
+    name: str  # of the setting in which nothing is varied
+    floor: str  # in captions
+    settings: tuple[Variation, ...]  # the first is the one of that name
+    engine: Variation  # the same robots as in the first, driven in the other way
+    longest: float  # straight distance of single tasks [m]
+    places: tuple[Place, ...]
+    base: Mapping[str, Any] = field(default_factory=dict)  # the scenario of all of them
+    traffic: bool = True  # streams are run as well
+    headlines: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    @property
+    def motion(self) -> str:
+        """How robots are driven in it."""
+        return scenario_from({"motion": "path", **self.base}).motion.name
+
+    @property
+    def spec(self) -> RobotSpec:
+        """The robots in which nothing is varied."""
+        return scenario_from(dict(self.base)).robot
+
+
+def papers() -> Subject:
+    """The paper's arena and robots."""
+    return Subject(
+        PAPER, "the paper’s open floor", SETTINGS, ENGINE, LONGEST, PLACES, headlines=HEADLINES
+    )
+
+
+def single_tasks(size: Size, seed: int, subject: Subject) -> Iterator[Job]:
     """Every setting in the same number of placements, each with so many tasks in turn."""
     for placement in range(seed, seed + size.placements):
-        for setting in (*SETTINGS, ENGINE):
-            robot = {**setting.scenario.get("robot", {}), "capacity": EVER}
-            scenario = {"motion": "path", "connected": False, "seed": placement}
-            scenario |= {**setting.scenario, "robot": robot}
+        for setting in (*subject.settings, subject.engine):
+            scenario = merged({"motion": "path", **subject.base}, setting.scenario)
+            scenario = merged(
+                scenario, {"connected": False, "seed": placement, "robot": {"capacity": EVER}}
+            )
             yield Job.of(
-                {"scenario": scenario, "tasks": size.tasks},
+                {"scenario": scenario, "tasks": size.tasks, "longest": subject.longest},
                 cell=setting.name,
                 labels={
                     "part": "single", "group": setting.group, "setting": setting.name,
@@ -170,20 +204,23 @@ def streams(size: Size, seed: int) -> Iterator[Job]:
                     )
 
 
-def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Job]:
+def lifetimes(
+    size: Size, seed: int, launch: Mapping[str, float], subject: Subject
+) -> Iterator[Job]:
     """Every protocol, place and way to bid on the same seeds, and the paper's motion.
 
     ``launch`` has the cost of a launch [J] for each setting, as it was fitted.
     """
     for number in range(seed, seed + size.seeds):
-        for place in PLACES[: size.places]:
-            ways: dict[str, Any] = {bid: {"name": "path", "belief": bid} for bid in BIDS}
+        for place in subject.places[: size.places]:
+            ways: dict[str, Any] = {bid: {"name": subject.motion, "belief": bid} for bid in BIDS}
             ways["corrected"]["per_launch"] = launch[place.setting]
-            if place.name == OPEN:
+            if place.name == OPEN and not subject.base:
                 ways = {AS_IN_THE_PAPER: "straight"} | ways
             for protocol in PROTOCOLS:
                 for bids, motion in ways.items():
                     scenario = {"protocol": protocol, "motion": motion, "seed": number}
+                    scenario = merged(subject.base, scenario)
                     if bids == AS_IN_THE_PAPER:  # the points start where the bodies do
                         scenario["world"] = {"name": "random", "room": RobotSpec().radius}
                     kept = bids == "straight" and number < seed + size.recorded
@@ -199,10 +236,10 @@ def lifetimes(size: Size, seed: int, launch: Mapping[str, float]) -> Iterator[Jo
                     )  # fmt: skip
 
 
-def headlines(size: Size, seed: int) -> Iterator[Job]:
+def headlines(size: Size, seed: int, subject: Subject) -> Iterator[Job]:
     """Lifetimes of all protocols with other robots, bids and all else as they are by default."""
     for number in range(seed, seed + size.seeds):
-        for name, varied in HEADLINES.items():
+        for name, varied in subject.headlines.items():
             for protocol in PROTOCOLS:
                 yield Job.of(
                     {"motion": "path", **varied, "protocol": protocol, "seed": number},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -15,23 +15,27 @@ from fleet.experiments.energy.launching import launch_cost
 from fleet.experiments.energy.linearity import TOLERABLE as TOLERANCE
 from fleet.experiments.energy.linearity import linearity
 from fleet.experiments.energy.models import CORRECTED, MODELS, Fit, fit, halves
-from fleet.experiments.energy.settings import LONGEST, SETTINGS, SHORTEST
+from fleet.experiments.energy.settings import SHORTEST, Subject
 from fleet.experiments.energy.trip_table import PARTS, TripTable
-from fleet.scenario.loading import scenario_from
+from fleet.scenario.loading import merged, scenario_from
 from fleet.study.report.style import DIM, INK, MARKERS, SERIES, WIDTH
 
-EDGES = (SHORTEST, 0.25, 0.5, 1.0, 2.0, 3.5, 5.0, LONGEST + 1e-9)  # [m]
-FINE = tuple(np.linspace(0.0, LONGEST, 29).tolist())  # [m]
+EDGES = (SHORTEST, 0.25, 0.5, 1.0, 2.0, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0)  # [m]
 MOST_DOTS = 3000
 PART_COLOURS = dict(
     zip(PARTS, (SERIES[5], SERIES[1], SERIES[2], SERIES[4], SERIES[3]), strict=True)
 )
 
 
-def by_distance(trips: TripTable, line: Fit) -> Exhibit:
+def edges(longest: float) -> tuple[float, ...]:
+    """Of buckets of straight distance up to the ``longest`` [m]."""
+    return (*(edge for edge in EDGES if edge < longest), longest + 1e-9)
+
+
+def by_distance(trips: TripTable, line: Fit, subject: Subject) -> Exhibit:
     """Eq. (1) on the straight line, in buckets of it; and the cloud of trips."""
     rows = []
-    for low, high, some in trips.by_distance(EDGES):
+    for low, high, some in trips.by_distance(edges(subject.longest)):
         if not len(some):
             continue
         found = accuracy(some["drained"], some.eq1)
@@ -48,7 +52,8 @@ def by_distance(trips: TripTable, line: Fit) -> Exhibit:
         "distance",
         "What trips drained, against the straight distance: on the left trip by trip, with Eq. (1)"
         " and the best straight line; on the right as a multiple of Eq. (1), the middle 80 % of"
-        " trips shaded. Single tasks in the paper’s arena. Bias is predicted less drained; R² is"
+        " trips shaded. Single tasks on"
+        f" {subject.floor}. Bias is predicted less drained; R² is"
         " that of Eq. (1) as it stands; in brackets are 95 % intervals.",
         [
             Column("straight distance [m]"), Column("trips", ","), Column("drained [J]", ".1f"),
@@ -56,11 +61,11 @@ def by_distance(trips: TripTable, line: Fit) -> Exhibit:
             Column("drained / Eq. (1)", ".3f"),
         ],
         rows,
-        _cloud(trips, line),
+        _cloud(trips, line, subject.longest),
     )  # fmt: skip
 
 
-def _cloud(trips: TripTable, line: Fit) -> Figure:
+def _cloud(trips: TripTable, line: Fit, longest: float) -> Figure:
     figure = Figure(figsize=(WIDTH, 3.0))
     left, right = figure.subplots(1, 2)
     chosen = np.random.default_rng(0).permutation(len(trips))[:MOST_DOTS]
@@ -68,7 +73,7 @@ def _cloud(trips: TripTable, line: Fit) -> Figure:
     left.plot(
         straight[chosen], drained[chosen], ".", ms=1.6, color=SERIES[5], alpha=0.6, rasterized=True
     )
-    ends = np.array([0.0, LONGEST])
+    ends = np.array([0.0, longest])
     rate = float(trips["per_metre"][0])
     intercept, slope = (c.value for c in line.coefficients)
     left.plot(ends, rate * ends, color=SERIES[1], label="Eq. (1)")
@@ -76,11 +81,11 @@ def _cloud(trips: TripTable, line: Fit) -> Figure:
         ends, intercept + slope * ends, color=INK, ls=(0, (4, 1.5)),
         label=f"best line: {intercept:.1f} J + {slope:.1f} J/m",
     )  # fmt: skip
-    left.set(xlabel="straight distance [m]", ylabel="drained [J]", xlim=(0, LONGEST))
-    left.set_ylim(0.0, 1.15 * rate * LONGEST)
+    left.set(xlabel="straight distance [m]", ylabel="drained [J]", xlim=(0, longest))
+    left.set_ylim(0.0, max(1.15 * rate * longest, float(np.quantile(drained, 0.99))))
     left.legend(loc="upper left")
     middles, quantiles = [], []
-    for low, high, some in trips.by_distance(FINE):
+    for low, high, some in trips.by_distance(np.linspace(0.0, longest, 29).tolist()):
         if len(some) > 4:
             middles.append(0.5 * (low + high))
             quantiles.append(np.quantile(some["drained"] / some.eq1, [0.1, 0.5, 0.9]))
@@ -89,21 +94,21 @@ def _cloud(trips: TripTable, line: Fit) -> Figure:
     right.plot(middles, middle, color=SERIES[0], label="median")
     right.axhline(1.0, color=SERIES[1], label="Eq. (1)")
     right.axhline(1.0 + TOLERANCE, color=DIM, lw=0.9, ls=(0, (1, 1)), label="10 % more")
-    right.set(xlabel="straight distance [m]", ylabel="drained / Eq. (1)", xlim=(0, LONGEST))
+    right.set(xlabel="straight distance [m]", ylabel="drained / Eq. (1)", xlim=(0, longest))
     right.set_yscale("log")
     ticks = [1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0]
     right.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     right.minorticks_off()
-    right.set_ylim(0.95, max(2.0, 1.1 * float(high.max())))
+    right.set_ylim(min(0.95, 0.95 * float(low.min())), max(2.0, 1.1 * float(high.max())))
     right.legend(loc="upper right")
     return figure
 
 
-def by_part(trips: TripTable) -> Exhibit:
+def by_part(trips: TripTable, subject: Subject) -> Exhibit:
     """What trips took beyond Eq. (1), and what for."""
     rows = []
     labels = []
-    for low, high, some in trips.by_distance(EDGES):
+    for low, high, some in trips.by_distance(edges(subject.longest)):
         if len(some):
             labels.append(f"{low:g} to\n{high:.3g}")
             means = [float(some.part(name).mean()) for name in PARTS]
@@ -129,7 +134,8 @@ def by_part(trips: TripTable) -> Exhibit:
         "parts",
         "Where the rest goes: the detour round others; the launch, which is speeding up, braking"
         " and the time that turning takes; and scrub of tyres that turn on the spot; per trip, and"
-        " as a share of Eq. (1). Single tasks in the paper’s arena, where"
+        " as a share of Eq. (1). Single tasks on"
+        f" {subject.floor}, where"
         " nobody else moves: nobody waits, nothing touches. Detours are less than"
         " nothing where robots stop short of sites that another one covers.",
         [
@@ -141,10 +147,10 @@ def by_part(trips: TripTable) -> Exhibit:
     )  # fmt: skip
 
 
-def by_setting(trips: TripTable) -> Exhibit:
+def by_setting(trips: TripTable, subject: Subject) -> Exhibit:
     """The same for other robots, crowds and floors."""
     rows = []
-    for setting in SETTINGS:
+    for setting in subject.settings:
         tried = trips.where(setting=setting.name)
         some = tried.arrived()
         if not len(some):
@@ -161,7 +167,7 @@ def by_setting(trips: TripTable) -> Exhibit:
             linearity(some).within_10,
             100.0 * float(some.part("detour").sum() / some.eq1.sum()),
             *fit(CORRECTED, some).coefficients,
-            launch_cost(scenario_from(setting.scenario).robot),
+            launch_cost(scenario_from(merged(subject.base, setting.scenario)).robot),
         ])  # fmt: skip
     return Exhibit(
         "settings",
@@ -179,12 +185,12 @@ def by_setting(trips: TripTable) -> Exhibit:
             Column("foreseen [J]", ".2f"),
         ],
         rows,
-        _settings(rows),
+        _settings(rows, {s.name: s.group for s in subject.settings}),
     )  # fmt: skip
 
 
-def _settings(rows: Sequence[Sequence[object]]) -> Figure:
-    groups = [next(s.group for s in SETTINGS if s.name == row[0]) for row in rows]
+def _settings(rows: Sequence[Sequence[object]], group_of: Mapping[str, str]) -> Figure:
+    groups = [group_of[str(row[0])] for row in rows]
     places, at = [], 0.0
     for before, group in zip([groups[0], *groups], groups, strict=False):
         at -= 1.0 if group == before else 1.6
@@ -265,8 +271,10 @@ def by_model(trips: TripTable) -> Exhibit:
 
 def _errors(trips: TripTable, said: np.ndarray) -> Iterator[tuple[float, float, float]]:
     """The middle of each bin [m], RMSE [J] and bias [%] there."""
-    edges = (SHORTEST, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0)
-    for low, high in pairwise(edges):
+    longest = float(trips["straight"].max())
+    near = (SHORTEST, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0)
+    edges = [edge for edge in near if edge < 0.9 * longest]
+    for low, high in pairwise([*edges, *np.arange(7.0, 0.9 * longest, 2.0).tolist(), longest]):
         there = (trips["straight"] >= low) & (trips["straight"] < high)
         if there.sum() > 4:
             drained = trips["drained"][there]

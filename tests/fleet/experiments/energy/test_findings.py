@@ -10,7 +10,7 @@ import pytest
 from fleet.experiments.energy.energy_report import on_engine
 from fleet.experiments.energy.findings import details, findings, on_bids, on_closure, verdict
 from fleet.experiments.energy.lives import MEASURES, lives
-from fleet.experiments.energy.settings import ENGINE, HUSKIES
+from fleet.experiments.energy.settings import ENGINE, HUSKIES, papers
 from fleet.experiments.energy.trip_table import TripTable
 
 
@@ -32,7 +32,7 @@ LISTED = lives(
 def test_where_launches_cost_eq1_may_not_be_used_for_short_trips(make_trips):
     single = make_trips(20_000, launch=5.0)
     asked = single.take(single["straight"] < 1.0)
-    found = findings(single, asked, asked, LISTED)
+    found = findings(single, asked, asked, LISTED, papers())
     assert found.launch.value == pytest.approx(5.0)
     assert found.paper.within_10 == pytest.approx(2.33, abs=0.011)
     assert found.skid is None
@@ -52,7 +52,7 @@ def test_where_launches_cost_eq1_may_not_be_used_for_short_trips(make_trips):
 
 def test_where_eq1_is_true_it_may_be_used(make_trips):
     trips = make_trips()
-    found = findings(trips, trips, trips, [])
+    found = findings(trips, trips, trips, [], papers())
     said = verdict(found)
     assert "linear in the straight distance, and proportional to it, within a tenth" in said
     assert "from 0 m on it is within a tenth of what is drained, and from 0 m on" in said
@@ -65,11 +65,11 @@ def test_percentages_are_shares_of_eq1(make_trips):
     trips = make_trips(detour=1.0)
     drained = trips.columns["drained"]
     drained *= 1.3
-    found = findings(trips, trips, trips, [])
+    found = findings(trips, trips, trips, [], papers())
     assert "drained 30 % more than it says" in verdict(found)
     assert "rfta2 30 % more" in details(found)[0]
     drained *= 0.75 / 1.3
-    assert "drained 25 % less than it says" in verdict(findings(trips, trips, trips, []))
+    assert "drained 25 % less than it says" in verdict(findings(trips, trips, trips, [], papers()))
 
 
 def test_where_a_robot_skids_no_line_holds(make_trips):
@@ -78,14 +78,14 @@ def test_where_a_robot_skids_no_line_holds(make_trips):
     skid.columns["setting"][:] = HUSKIES
     skid.columns["drained"][:] += 10.0 * skid["straight"] ** 2  # whatever is not a line
     both = TripTable({name: np.concatenate([single[name], skid[name]]) for name in single.columns})
-    said = verdict(findings(both, single, single, []))
+    said = verdict(findings(both, single, single, [], papers()))
     assert said.startswith("Energy is linear in the straight distance, but not proportional to it.")
     assert "(husky) it is neither linear in the straight distance nor proportional to it" in said
 
 
 def test_how_far_a_line_is_off_is_said_in_percent(make_trips):
     trips = make_trips(launch=5.0)
-    found = findings(trips, trips, trips, [])
+    found = findings(trips, trips, trips, [], papers())
     tolerable = replace(found.paper, line_off=0.07)
     said = verdict(replace(found, paper=tolerable, skid=replace(found.paper, line_off=0.42)))
     assert "is within 7 % at all lengths" in said
@@ -102,13 +102,14 @@ def test_how_far_bodies_are_from_what_was_foreseen_is_said_in_percent(make_trips
     both = TripTable(
         {name: np.concatenate([foreseen[name], driven[name]]) for name in foreseen.columns}
     )
-    assert "within 1.500 % on average and 2.00 % at most, over 100 trips" in on_engine(both)
-    assert on_engine(foreseen) == ""
+    said = on_engine(both, papers())
+    assert "within 1.500 % on average and 2.00 % at most, over 100 trips" in said
+    assert on_engine(foreseen, papers()) == ""
 
 
 def test_where_detours_are_everywhere_it_may_not_be_used_at_all(make_trips):
     trips = make_trips(detour=1.3)
-    said = verdict(findings(trips, trips, trips, []))
+    said = verdict(findings(trips, trips, trips, [], papers()))
     assert "it is nowhere within a tenth, up to 7 m" in said
 
 
@@ -123,6 +124,7 @@ def test_bids_are_compared_by_failures_and_lifetimes():
 
 def test_an_account_that_does_not_close_is_said(make_trips):
     trips = make_trips(launch=5.0)
-    assert "the parts add up to what" in on_closure(findings(trips, trips, trips, []))
+    assert "the parts add up to what" in on_closure(findings(trips, trips, trips, [], papers()))
     trips["energy_launch"][3] += 1.0
-    assert "the parts do NOT add up to what" in on_closure(findings(trips, trips, trips, []))
+    found = findings(trips, trips, trips, [], papers())
+    assert "the parts do NOT add up to what" in on_closure(found)

@@ -17,7 +17,7 @@ from fleet.robot import Appraisal, RobotSpec
 from fleet.study import Job
 
 SMALL = Size(placements=1, tasks=60, seeds=1, recorded=1, streams=1)
-SINGLE = {task.cell: task for task in settings.single_tasks(SMALL, 3)}
+SINGLE = {task.cell: task for task in settings.single_tasks(SMALL, 3, settings.papers())}
 
 
 def trips_of(row):
@@ -131,7 +131,7 @@ def test_streams_have_waiting_or_contact_and_add_up(traffic):
 
 def test_lifetimes_differ_in_nothing_but_their_bids():
     launch = {place.setting: 5.0 for place in settings.PLACES}
-    tasks = list(settings.lifetimes(SMALL, 0, launch))
+    tasks = list(settings.lifetimes(SMALL, 0, launch, settings.papers()))
     by_bids = {}
     for task in tasks:
         if (task.labels["place"], task.labels["protocol"]) == ("rooms", "rfta3"):
