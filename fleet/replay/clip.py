@@ -23,6 +23,7 @@ from fleet.replay.scheme import (
     ROUND,
     ROUTING_COLOUR,
     SIM_TIME,
+    TRIPS,
 )
 from fleet.replay.still import check_ending, draw, the_moment
 
@@ -148,10 +149,15 @@ def _rounds(recording: Recording, first: float, last: float, step: float) -> Ite
     messages = inside & np.array([level == ["TRACE"] for level in lines.values], bool)
     numbers, at = lines.moments[MSG][messages], times[messages]
     order = np.argsort(numbers)
+    trips = recording.table(TRIPS)
+    departed, ended = (np.round(trips[name].to_numpy(), 9) for name in ("departed", "ended"))
     for number, time in zip(numbers[order].tolist(), at[order].tolist(), strict=True):
-        yield from ((SIM_TIME, moment) for moment in _between(now + step, time, step))
+        for moment in _between(now + step, time, step):
+            yield SIM_TIME, moment
+            now = moment
         yield MSG, float(number)
-        now = max(now, time)
+        if not ((departed < time) & (round(time, 9) < ended)).any():  # else the drive goes on as it did
+            now = max(now, time)
     yield from ((SIM_TIME, moment) for moment in _between(now + step, end, step))
 
 
