@@ -156,7 +156,9 @@ def _rounds(recording: Recording, first: float, last: float, step: float) -> Ite
             yield SIM_TIME, moment
             now = moment
         yield MSG, float(number)
-        if not ((departed < time) & (round(time, 9) < ended)).any():  # else the drive goes on as it did
+        if not (
+            (departed < time) & (round(time, 9) < ended)
+        ).any():  # else the drive goes on as it did
             now = max(now, time)
     yield from ((SIM_TIME, moment) for moment in _between(now + step, end, step))
 

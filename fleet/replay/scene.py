@@ -110,12 +110,11 @@ def draw_scene(sink: Sink, state: FleetState) -> None:
     sink.static(scheme.RINGS, rr.Points2D.from_fields(radii=RING * mark, draw_order=19.0))
     sink.static(
         scheme.ROBOTS,
-        rr.Points2D.from_fields(
-            radii=mark,
-            draw_order=21.0,
-            labels=[f"r{robot}" for robot in range(state.n)],
-            show_labels=False,
-        ),
+        rr.Points2D.from_fields(radii=mark, draw_order=21.0, show_labels=False),
+    )
+    sink.static(  # over those at rest that have a part, to be pointed at: nothing to be seen
+        scheme.PARTS,
+        rr.Points2D.from_fields(radii=mark, colors=0x00000000, draw_order=22.0, show_labels=False),
     )
     sink.static(
         scheme.MOVERS,
@@ -146,6 +145,7 @@ def draw_scene(sink: Sink, state: FleetState) -> None:
     sink.static(
         scheme.NAMES, rr.Points2D.from_fields(radii=0.001, draw_order=40.0, show_labels=True)
     )
+    sink.static(scheme.CARD, rr.TextDocument.from_fields(media_type=rr.MediaType.MARKDOWN))
     describe_chart(sink)
     describe_counts(sink)
     describe_lifetime(sink)

@@ -49,6 +49,7 @@ MOVERS: Final = "world/movers"  # under way
 MARKS: Final = "world/marks"  # of those that failed or are silenced
 EVENT: Final = "world/event"
 NAMES: Final = "world/names"
+PARTS: Final = "world/parts"  # who is what, said when it is pointed at
 LEADERS: Final = "world/leaders"  # from names to what they name
 OPEN_EVENTS: Final = "world/open_events"  # that are not in focus
 TRUE_SITE: Final = "world/true_site"  # of the event in focus, if it was reported elsewhere
@@ -104,7 +105,8 @@ HISTOGRAM: Final = "lifetime/energy_left"
 # Columns of our own beside what is drawn.
 ROBOT_ENERGY: Final = "energy"  # [J] of Robot, at ROBOTS and MOVERS
 ROBOT_ID: Final = "id"  # at MOVERS; at ROBOTS it is the place in the row
-ROBOT_PLANNED: Final = "planned"  # [m] at MOVERS: where it should be by its plan
+ROBOT_OFF_PLAN: Final = "off_plan"  # [m] at MOVERS: from where it is to where its plan has it
+ROBOT_IS: Final = "is"  # at PARTS, in words
 ROBOT_HEADING: Final = "heading"  # [rad] at MOVERS
 
 # Colours 0xRRGGBBAA.

@@ -62,8 +62,8 @@ def poses(recording: Recording) -> pa.Table:
     places = recording.rows(scheme.MOVERS, "Points2D:positions").values
     spots = _flat([np.asarray(row).reshape(-1) for row in places], np.float32).reshape(-1, 2)
     columns |= {"x": spots[:, 0], "y": spots[:, 1]}
-    plans = recording.rows(scheme.MOVERS, f"Robot:{scheme.ROBOT_PLANNED}").values
-    due = _flat([np.asarray(row).reshape(-1) for row in plans], np.float32).reshape(-1, 2)
+    off = recording.rows(scheme.MOVERS, f"Robot:{scheme.ROBOT_OFF_PLAN}").values
+    due = spots + _flat([np.asarray(row).reshape(-1) for row in off], np.float32).reshape(-1, 2)
     columns |= {"planned_x": due[:, 0], "planned_y": due[:, 1]}
     for name in (scheme.ROBOT_HEADING, scheme.ROBOT_ENERGY):
         columns[name] = _flat(recording.rows(scheme.MOVERS, f"Robot:{name}").values, np.float32)

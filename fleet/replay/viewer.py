@@ -187,7 +187,7 @@ def _open_window(recording: Path) -> None:
         finally:
             viewer.terminate()
             viewer.wait()
-        if code > 0:
+        if code != 0:
             said.seek(0)
             lines = said.read().decode(errors="replace").strip().splitlines()
             reason = lines[0] if lines else f"exit code {code}"

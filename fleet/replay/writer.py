@@ -34,7 +34,7 @@ from fleet.replay.state import (
 from protocols.messages import Award, Bid, Move, Point, RobotId
 
 BACKLOG = 64  # frames that wait to be drawn before the run must wait too
-CHUNK_ROUNDS = 50  # that are written together: a chunk costs 2 kB, however little is in it
+CHUNK_ROUNDS = 200  # that are written together: a chunk costs 2 kB, however little is in it
 CHUNK_POSES = 100_000  # or so many poses
 
 

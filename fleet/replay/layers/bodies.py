@@ -21,7 +21,7 @@ from fleet.replay.scheme import (
     ROBOT_ENERGY,
     ROBOT_HEADING,
     ROBOT_ID,
-    ROBOT_PLANNED,
+    ROBOT_OFF_PLAN,
     ROBOTS,
 )
 from fleet.replay.sink import Sink
@@ -32,6 +32,8 @@ Floats = NDArray[np.float32]
 
 SEEN = 1e-4  # [m] that can be told apart
 NOSE = 1.9  # length of a mover's pointer, in its radii
+POINTS = 256  # of the compass, that a pointer is drawn towards: few values make small files
+COMPASS = np.column_stack([f(np.arange(POINTS) * (2.0 * np.pi / POINTS)) for f in (np.cos, np.sin)])
 CROSS = 0.9 * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
 STROKES = {  # in radii of a robot: (lines, 2, 2)
     "exhausted": CROSS,
@@ -167,7 +169,8 @@ class Bodies(Layer):
     def _send_movers(self, sink: Sink, capacity: float) -> None:
         when, lengths, poses = joined(self._moving)
         heading, reach = poses[:, 4], NOSE * self._state.mark
-        noses = reach * np.column_stack([np.cos(heading), np.sin(heading)])
+        drawn = np.rint(heading * (POINTS / (2.0 * np.pi))).astype(int) % POINTS
+        noses = (reach * COMPASS)[drawn]
         sink.rows(
             MOVERS,
             when,
@@ -181,7 +184,7 @@ class Bodies(Layer):
             column(own("Robot", ROBOT_ID), whole(poses[:, 0]), lengths),
             column(own("Robot", ROBOT_HEADING), reals(heading), lengths),
             column(own("Robot", ROBOT_ENERGY), reals(poses[:, 5]), lengths),
-            column(own("Robot", ROBOT_PLANNED), pairs(poses[:, 6:8]), lengths),
+            column(own("Robot", ROBOT_OFF_PLAN), pairs(poses[:, 6:8] - poses[:, 2:4]), lengths),
         )
         if not self._names:
             return

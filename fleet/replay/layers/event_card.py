@@ -109,13 +109,7 @@ class EventCard(Layer):
         """The cards."""
         if self._rows:
             when, cards = zip(*self._rows, strict=True)
-            media = ["text/markdown"] * len(cards)
-            sink.rows(
-                CARD,
-                when,
-                column(rr.TextDocument.descriptor_text(), texts(cards)),
-                column(rr.TextDocument.descriptor_media_type(), texts(media)),
-            )
+            sink.rows(CARD, when, column(rr.TextDocument.descriptor_text(), texts(cards)))
         self._rows = []
 
     def _draw_if_focused(self, at: Moment, talk: OpenConversation) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from fleet.replay.columns import Moment, colours, column, pairs, segments, texts
+from fleet.replay.columns import Moment, colours, column, own, pairs, segments, texts
 from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
 from fleet.replay.layers.label_placement import HANG, LabelPlacement
 from fleet.replay.scheme import (
@@ -19,6 +19,8 @@ from fleet.replay.scheme import (
     LEADERS,
     NAMES,
     OPEN_EVENTS,
+    PARTS,
+    ROBOT_IS,
     SEARCH,
     SILENT,
     SOURCE_COLOUR,
@@ -31,6 +33,7 @@ from protocols.messages import Award, Point, RobotId
 
 TARGET = 2.3  # radius of the ring around an event, in radii of a robot
 ELSEWHERE = 1e-9  # [m] from where an event is said to be
+NO_PART = ((-1e6, -1e6), "")  # out of sight
 COLOURS = {
     "collector": SOURCE_COLOUR,
     "auctioneer": AUCTIONEER_COLOUR,
@@ -56,6 +59,8 @@ class Roles(Layer):
         self._true_rows: list[tuple[Moment, list[tuple[Point, Point]]]] = []
         self._silent_rows: list[tuple[Moment, list[Region]]] = []
         self._name_rows: list[tuple[Moment, list[Name]]] = []
+        self._part_rows: list[tuple[Moment, list[tuple[Point, str]]]] = []
+        self._parts: list[tuple[Point, str]] | None = None  # of the latest row
         self._held: dict[RobotId, list[str]] = {}
         self._names: dict[str, Name] = {}  # by whose it is
 
@@ -168,6 +173,8 @@ class Roles(Layer):
             sink.rows(SILENT, when, *_circles(pairs(flat[:, :2]), counts, flat[:, 2]))
         if self._name_rows:
             self._send_names(sink)
+        if self._part_rows:
+            self._send_parts(sink)
         self._event_rows, self._name_rows, self._open_rows = [], [], []
         self._silent_rows, self._true_rows = [], []
 
@@ -199,6 +206,23 @@ class Roles(Layer):
             ),
         )
 
+    def _send_parts(self, sink: Sink) -> None:
+        """What the viewer says of a robot that is pointed at. It says so where there are several;
+        nobody, nowhere, is the first.
+        """
+        when, rows = zip(*self._part_rows, strict=True)
+        parts = [part for row in rows for part in (NO_PART, *row)]
+        counts = [len(row) + 1 for row in rows]
+        sink.rows(
+            PARTS,
+            when,
+            column(
+                rr.Points2D.descriptor_positions(), pairs([place for place, _ in parts]), counts
+            ),
+            column(own("Robot", ROBOT_IS), texts([words for _, words in parts]), counts),
+        )
+        self._part_rows = []
+
     def _assume(self, robot: RobotId, role: str, *, once: bool = False) -> None:
         """The robot has a role; one that can be had ``once`` is the first one's to keep."""
         if once and any(role in held for held in self._held.values()):
@@ -224,6 +248,15 @@ class Roles(Layer):
 
     def _draw_names(self, at: Moment) -> None:
         self._name_rows.append((at, list(self._names.values())))
+        state = self._state
+        event = f"of event {state.focus + 1}"
+        parts = [
+            (state.at(robot), f"robot {robot} · {state.energies[robot]:.0f} J · {each} {event}")
+            for robot, each in ((robot, ", ".join(held)) for robot, held in self._held.items())
+        ]
+        if parts != self._parts:
+            self._parts = parts
+            self._part_rows.append((at, parts))
 
 
 def leader(name: Name, side: float) -> tuple[Point, Point] | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from mcap.reader import make_reader
 from PIL import Image
 
 from fleet.replay import scheme
@@ -41,9 +42,6 @@ def test_tables_are_written_as_they_are(stream, tmp_path):
 
 
 def test_mcap_has_a_topic_for_each_table(rounds, tmp_path):
-    pytest.importorskip("mcap")
-    from mcap.reader import make_reader
-
     path = export_tables(rounds.path, tmp_path, mcap=True)[-1]
     with path.open("rb") as file:
         found = [

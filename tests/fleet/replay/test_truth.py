@@ -363,3 +363,29 @@ def test_a_run_that_broke_off_says_so(tmp_path):
     assert headings(card) == f"## The run broke off at {time:.2f} s"
     lines = [text[0] for text in recording.rows(scheme.LOG, "TextLog:text").values]
     assert f"the run broke off at {time:.2f} s" in lines
+
+
+def test_who_is_pointed_at_says_who_it_is(faulty):
+    """The viewer shows up to three components that differ from robot to robot."""
+    recording, witness = faulty
+    for path in (scheme.PARTS, scheme.ROBOTS):
+        differ = {
+            name
+            for batch in recording.batches(path)
+            for name in batch.schema.names
+            if ":" in name and any(len(cell.values) > 1 for cell in batch.column(name) if cell)
+        }
+        assert len(differ) <= 3, path
+    checked = 0
+    for line in witness.lines:
+        words = recording.at(scheme.PARTS, f"Robot:{scheme.ROBOT_IS}", scheme.MSG, line.number)
+        places = recording.at(scheme.PARTS, "Points2D:positions", scheme.MSG, line.number)
+        robots = recording.at(scheme.ROBOTS, "Points2D:positions", scheme.MSG, line.number)
+        for text, place in zip(words[1:], places[1:], strict=True):
+            told = re.fullmatch(r"robot (\d+) · \d+ J · ([a-z, ]+) of event (\d+)", text)
+            robot = int(told[1])
+            assert np.isnan(robots[robot]).any() or dist(place, robots[robot]) < 1e-4
+            if "auctioneer" in told[2] and (award := witness.awards.get(int(told[3]) - 1)):
+                assert award.auctioneer == robot
+                checked += 1
+    assert checked > 10
