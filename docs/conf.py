@@ -1,6 +1,12 @@
 """How the pages of the documentation are built: `make docs`, offline, warnings are errors."""
 
+import sys
+from pathlib import Path
+
 from fleet import __version__
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
 
 project = "talking-fleet"
 copyright = "the authors of talking-fleet, MIT"
@@ -25,3 +31,10 @@ html_theme = "furo"
 html_title = "talking-fleet"
 html_theme_options = {"navigation_with_keys": True}
 exclude_patterns = ["_build"]
+
+
+def setup(app):
+    """Write what is made from the code before the pages are read."""
+    import generated_keys
+
+    app.connect("builder-inited", lambda _app: generated_keys.write(HERE / "reference/keys.md"))

@@ -14,7 +14,7 @@ from fleet.tasks import OPEN, State, TaskBook
 from protocols.messages import KINDS
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from fleet.notebook_figure import NotebookFigure
 
 Ending = Literal[
     "rounds played",  # as many as were asked for
@@ -95,7 +95,7 @@ class Summary:
             del described["stream"]
         return described
 
-    def plot(self) -> Figure:
+    def plot(self) -> NotebookFigure:
         """What the energy went into [J], and what was said: a figure, which a notebook shows."""
         from fleet.summary_figure import draw
 

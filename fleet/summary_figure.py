@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from matplotlib.figure import Figure
-
+from fleet.notebook_figure import NotebookFigure
 from fleet.summary_lines import title
 
 if TYPE_CHECKING:
@@ -17,9 +16,9 @@ if TYPE_CHECKING:
 SIZE = (7.4, 2.6)  # [inch]
 
 
-def draw(summary: Summary) -> Figure:
+def draw(summary: Summary) -> NotebookFigure:
     """Two panels of bars: energy drained by account [J], transmissions by kind."""
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = NotebookFigure(figsize=SIZE, layout="constrained")
     figure.suptitle(title(summary).replace("\n", "; "), fontsize=9.0)
     energy, talk = figure.subplots(1, 2)
     _bars(energy, summary.energy_by_account, "energy drained [J]")

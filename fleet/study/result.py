@@ -20,7 +20,8 @@ from fleet.study.parquet import bring_up_to_date, runs_table, side_table
 
 if TYPE_CHECKING:
     import pyarrow as pa
-    from matplotlib.figure import Figure
+
+    from fleet.notebook_figure import NotebookFigure
 
 
 class StudyResult:
@@ -42,7 +43,7 @@ class StudyResult:
 
         return f"<p>{escape(repr(self))}</p>{table(self.folder)}"
 
-    def plot(self, *measures: str) -> Figure:
+    def plot(self, *measures: str) -> NotebookFigure:
         """The means with their 95 % intervals, of these columns or of the first few that vary.
 
         Of the first combination of what is neither on the abscissa nor a colour; a notebook shows

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fleet.notebook_figure import NotebookFigure
 from fleet.study.report.estimates import ROBOTS_AT, Contrast, Coordinates, Curve, Energies, Mean
 from fleet.study.report.layout import Layout
 from fleet.study.report.quantities import name_of, short_name
@@ -26,7 +27,7 @@ LONG = 16  # letters of a name beside a row
 LETTERS = 92  # of the legend that fit into a line
 
 
-def draw_means(means: Sequence[Mean], layout: Layout) -> Figure:
+def draw_means(means: Sequence[Mean], layout: Layout) -> NotebookFigure:
     """A panel for each measure: its mean over x, or in a row for each of the series."""
     return _panels(means, layout, lambda mean: mean.estimate, name_of, zero=False)
 
@@ -85,13 +86,13 @@ def _panels(
     title: Callable[[str], str],
     *,
     zero: bool,
-) -> Figure:
+) -> NotebookFigure:
     measures = list(dict.fromkeys(item.measure for item in items))
     shades = _shades((item.cell for item in items), layout)
     columns = len(measures) if len(measures) <= MOST_SIDE_BY_SIDE else 3 if len(measures) > 4 else 2
     rows = ceil(len(measures) / columns)
     height = PANEL if layout.x is not None else max(1.1, 0.45 + 0.24 * len(shades))
-    figure = Figure(figsize=(WIDTH, rows * height + 0.3))
+    figure = NotebookFigure(figsize=(WIDTH, rows * height + 0.3))
     grid = figure.subplots(rows, columns, squeeze=False, sharex=layout.x is not None)
     for axes in grid.flat[len(measures) :]:
         axes.set_visible(False)

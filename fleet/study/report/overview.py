@@ -6,8 +6,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
+from fleet.notebook_figure import NotebookFigure
 from fleet.scenario.errors import bad
 from fleet.study.ledger import reading
 from fleet.study.parquet import runs_table
@@ -22,7 +21,7 @@ from fleet.study.report.style import in_style
 from fleet.study.report.text import plain
 
 
-def figure(folder: Path, names: tuple[str, ...]) -> Figure:
+def figure(folder: Path, names: tuple[str, ...]) -> NotebookFigure:
     """The means with their 95 % intervals, a panel a measure; as the report's first figure.
 
     Raises:
