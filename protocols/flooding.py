@@ -46,7 +46,7 @@ def k_saap(
 def bfs(
     view: View, event: Event, source: RobotId, *, hopmax: int = 7, metric: Metric = energy_left
 ) -> Conversation:
-    """Auction on the breadth-first tree of the collecting robot, hopmax deep (RODAA).
+    """Auction on the breadth-first tree of the collecting robot, hopmax deep (after RODAA).
 
     As the search runs along every edge (its complexity is O(diameter·|E|), Table 1), a robot
     calls each neighbour but its parent by itself; bids travel back one by one.

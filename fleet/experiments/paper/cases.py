@@ -65,7 +65,7 @@ SERIES = (
 
 def otherwise(networks: int) -> int:
     """How many networks the readings that are not the default are run on."""
-    return max(2, round(NETWORKS_OTHERWISE * networks))
+    return min(networks, max(2, round(NETWORKS_OTHERWISE * networks)))
 
 
 GROWTH: dict[str, dict[str, Any]] = {  # of Table 1, with what they are run as

@@ -10,10 +10,19 @@ import pytest
 from click.testing import CliRunner
 
 from fleet.cli import main
-from fleet.experiments.paper import resampling
+from fleet.experiments.paper import beyond, resampling
+from fleet.experiments.paper import paper_campaign as campaign
 from fleet.experiments.paper.beyond import reaches
 from fleet.experiments.paper.campaign_runs import Results
-from fleet.experiments.paper.cases import GROWTH, RANGES, SEARCH_RADII, SERIES, WORLDS, cases
+from fleet.experiments.paper.cases import (
+    GROWTH,
+    RANGES,
+    SEARCH_RADII,
+    SERIES,
+    WORLDS,
+    cases,
+    growth_cases,
+)
 from fleet.experiments.paper.claims import claims
 from fleet.experiments.paper.paper_campaign import paper_campaign, tasks
 from fleet.experiments.paper.paper_figures import CLOSEST, draw_all, draw_further
@@ -207,6 +216,15 @@ class TestReadings:
         ]
 
 
+def test_physics_has_a_column_of_its_own():
+    rows = [r | {"lifetime": 40} for r in _rows(everything(seeds=2))]
+    side, physics = columns(everything(seeds=2)), Sample.of(Results.of_rows(rows))
+    found = table(2, "Table 2", "random", side, [physics])
+    assert found["columns"] == [str(DEFAULT), "physics"]
+    lives = [row["cells"] for row in found["rows"] if row["protocol"] == "RFTA2"][1]
+    assert [cell for cell, _ in lives] == ["100.00 ± 0.00", "40.00 ± 0.00"]
+
+
 def _rows(results):
     names = list(results.columns)
     columns_ = [results[name].tolist() for name in names]
@@ -297,9 +315,29 @@ def test_readings_are_of_the_search_and_have_networks_of_the_default():
     assert {read for _, read, _ in cases(10, "physics")} == {str(DEFAULT), ANY}
 
 
+@pytest.fixture
+def a_part_of_the_cases(monkeypatch):
+    """Three ranges, 2SR, n up to 100, bounds that are not computed: seconds instead of minutes."""
+
+    def few(networks, motion):
+        yield from (
+            case
+            for case in cases(networks, motion)
+            if case[2]["range"] <= 2.5 and case[2]["search_radius"] == 2.0
+        )
+
+    def small(networks):
+        yield from (case for case in growth_cases(networks) if case[2]["robots"] <= 100)
+
+    monkeypatch.setattr(campaign, "cases", few)
+    monkeypatch.setattr(campaign, "growth_cases", small)
+    monkeypatch.setattr(beyond, "typical_bounds", lambda _world: Bounds(1000.0, 1200))
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("a_part_of_the_cases")
 def test_a_small_campaign_from_end_to_end(tmp_path):
-    result, page = paper_campaign(tmp_path, networks=2, workers=2)
+    result, page = paper_campaign(tmp_path, networks=1, workers=2)
     assert not result.failures()
     times = [run["wall_time"] for run in result.rows()]
     text = page.read_text(encoding="utf-8")
@@ -311,7 +349,7 @@ def test_a_small_campaign_from_end_to_end(tmp_path):
     assert not re.search(r"<(img|script|link|iframe|use)\b[^>]*http", text)  # readable offline
     with (tmp_path / "table-2.csv").open(encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == 1 + len(ROWS) * len(PROTOCOLS) + len(BIDS) - 1
-    again, _ = paper_campaign(tmp_path, networks=2, workers=2)
+    again, _ = paper_campaign(tmp_path, networks=1, workers=2)
     assert [run["wall_time"] for run in again.rows()] == times  # nothing ran twice
 
 
