@@ -112,9 +112,8 @@ def draw_scene(sink: Sink, state: FleetState) -> None:
         scheme.ROBOTS,
         rr.Points2D.from_fields(radii=mark, draw_order=21.0, show_labels=False),
     )
-    sink.static(  # over those at rest that have a part, to be pointed at: nothing to be seen
-        scheme.PARTS,
-        rr.Points2D.from_fields(radii=mark, colors=0x00000000, draw_order=22.0, show_labels=False),
+    sink.static(  # over those at rest that have a part, and looking alike: to be pointed at
+        scheme.PARTS, rr.Points2D.from_fields(radii=mark, draw_order=22.0, show_labels=False)
     )
     sink.static(
         scheme.MOVERS,

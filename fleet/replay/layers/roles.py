@@ -9,11 +9,13 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
+from fleet.replay.colormap import energy_colours
 from fleet.replay.columns import Moment, colours, column, own, pairs, segments, texts
 from fleet.replay.journal import RELOCATED, RecordedLine, TripEnd
 from fleet.replay.layers.label_placement import HANG, LabelPlacement
 from fleet.replay.scheme import (
     AUCTIONEER_COLOUR,
+    DEAD_COLOUR,
     EVENT,
     EVENT_COLOUR,
     LEADERS,
@@ -33,7 +35,6 @@ from protocols.messages import Award, Point, RobotId
 
 TARGET = 2.3  # radius of the ring around an event, in radii of a robot
 ELSEWHERE = 1e-9  # [m] from where an event is said to be
-NO_PART = ((-1e6, -1e6), "")  # out of sight
 COLOURS = {
     "collector": SOURCE_COLOUR,
     "auctioneer": AUCTIONEER_COLOUR,
@@ -50,6 +51,18 @@ class Name(NamedTuple):
     named: Point  # where what it names is [m]
 
 
+class Part(NamedTuple):
+    """A robot at rest that has a part in the conversation in focus."""
+
+    place: Point  # [m]
+    energy: float  # [J]
+    on_air: bool
+    words: str  # what it is
+
+
+NO_PART = Part((-1e6, -1e6), 0.0, False, "")  # out of sight
+
+
 class Roles(Layer):
     """Names of those who take part in the conversation in focus, and of its event."""
 
@@ -59,8 +72,8 @@ class Roles(Layer):
         self._true_rows: list[tuple[Moment, list[tuple[Point, Point]]]] = []
         self._silent_rows: list[tuple[Moment, list[Region]]] = []
         self._name_rows: list[tuple[Moment, list[Name]]] = []
-        self._part_rows: list[tuple[Moment, list[tuple[Point, str]]]] = []
-        self._parts: list[tuple[Point, str]] | None = None  # of the latest row
+        self._part_rows: list[tuple[Moment, list[Part]]] = []
+        self._parts: list[Part] | None = None  # of the latest row
         self._held: dict[RobotId, list[str]] = {}
         self._names: dict[str, Name] = {}  # by whose it is
 
@@ -213,13 +226,17 @@ class Roles(Layer):
         when, rows = zip(*self._part_rows, strict=True)
         parts = [part for row in rows for part in (NO_PART, *row)]
         counts = [len(row) + 1 for row in rows]
+        energies = [part.energy for part in parts]
+        tints = energy_colours(energies, self._state.capacity)
+        paint = np.where([part.on_air for part in parts], tints, np.uint32(DEAD_COLOUR))
         sink.rows(
             PARTS,
             when,
             column(
-                rr.Points2D.descriptor_positions(), pairs([place for place, _ in parts]), counts
+                rr.Points2D.descriptor_positions(), pairs([part.place for part in parts]), counts
             ),
-            column(own("Robot", ROBOT_IS), texts([words for _, words in parts]), counts),
+            column(rr.Points2D.descriptor_colors(), colours(paint), counts),
+            column(own("Robot", ROBOT_IS), texts([part.words for part in parts]), counts),
         )
         self._part_rows = []
 
@@ -251,7 +268,12 @@ class Roles(Layer):
         state = self._state
         event = f"of event {state.focus + 1}"
         parts = [
-            (state.at(robot), f"robot {robot} · {state.energies[robot]:.0f} J · {each} {event}")
+            Part(
+                state.at(robot),
+                float(state.energies[robot]),
+                bool(state.on_air[robot]),
+                f"robot {robot} · {state.energies[robot]:.0f} J · {each} {event}",
+            )
             for robot, each in ((robot, ", ".join(held)) for robot, held in self._held.items())
         ]
         if parts != self._parts:

@@ -380,11 +380,15 @@ def test_who_is_pointed_at_says_who_it_is(faulty):
     for line in witness.lines:
         words = recording.at(scheme.PARTS, f"Robot:{scheme.ROBOT_IS}", scheme.MSG, line.number)
         places = recording.at(scheme.PARTS, "Points2D:positions", scheme.MSG, line.number)
+        paint = recording.at(scheme.PARTS, "Points2D:colors", scheme.MSG, line.number)
         robots = recording.at(scheme.ROBOTS, "Points2D:positions", scheme.MSG, line.number)
-        for text, place in zip(words[1:], places[1:], strict=True):
+        colours = recording.at(scheme.ROBOTS, "Points2D:colors", scheme.MSG, line.number)
+        for text, place, colour in zip(words[1:], places[1:], paint[1:], strict=True):
             told = re.fullmatch(r"robot (\d+) · \d+ J · ([a-z, ]+) of event (\d+)", text)
             robot = int(told[1])
-            assert np.isnan(robots[robot]).any() or dist(place, robots[robot]) < 1e-4
+            if not np.isnan(robots[robot]).any():
+                assert dist(place, robots[robot]) < 1e-4
+                assert colour == colours[robot]  # it hides nothing
             if "auctioneer" in told[2] and (award := witness.awards.get(int(told[3]) - 1)):
                 assert award.auctioneer == robot
                 checked += 1
