@@ -51,7 +51,7 @@ class Name(NamedTuple):
     named: Point  # where what it names is [m]
 
 
-class Part(NamedTuple):
+class PartHeld(NamedTuple):
     """A robot at rest that has a part in the conversation in focus."""
 
     place: Point  # [m]
@@ -60,7 +60,7 @@ class Part(NamedTuple):
     words: str  # what it is
 
 
-NO_PART = Part((-1e6, -1e6), 0.0, False, "")  # out of sight
+NO_PART = PartHeld((-1e6, -1e6), 0.0, False, "")  # out of sight
 
 
 class Roles(Layer):
@@ -72,8 +72,8 @@ class Roles(Layer):
         self._true_rows: list[tuple[Moment, list[tuple[Point, Point]]]] = []
         self._silent_rows: list[tuple[Moment, list[Region]]] = []
         self._name_rows: list[tuple[Moment, list[Name]]] = []
-        self._part_rows: list[tuple[Moment, list[Part]]] = []
-        self._parts: list[Part] | None = None  # of the latest row
+        self._part_rows: list[tuple[Moment, list[PartHeld]]] = []
+        self._parts: list[PartHeld] | None = None  # of the latest row
         self._held: dict[RobotId, list[str]] = {}
         self._names: dict[str, Name] = {}  # by whose it is
 
@@ -268,7 +268,7 @@ class Roles(Layer):
         state = self._state
         event = f"of event {state.focus + 1}"
         parts = [
-            Part(
+            PartHeld(
                 state.at(robot),
                 float(state.energies[robot]),
                 bool(state.on_air[robot]),
