@@ -54,7 +54,7 @@ class LawFamily:
 
 def by_motion(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> LawFamily:
     """Laws that are linear in metres, seconds, radians, seconds of turning, and v²."""
-    samples = samples_of(ground, lag=lag, over=over)
+    samples = samples_of(ground, lag, over)
     if not len(samples.step):
         raise bad(
             "--log", f"{ground.name}: it never drives; expected speeds of more than"
@@ -67,74 +67,61 @@ def by_motion(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> LawFami
     )  # fmt: skip
 
 
-def by_forces(
-    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float = 0.0, over: float = 0.0
-) -> tuple[LawFamily, Chassis]:
-    """The law by forces, made linear where it fits best, and the chassis with its onset."""
+def by_forces(ground: LogGround, chassis: Chassis, start: LawFamily) -> tuple[LawFamily, Chassis]:
+    """The law by forces, made linear where it fits best, and the chassis with its onset.
+
+    On the samples of ``start``, the law by motion. Of a log that it fits as closely as only a
+    simulation is fitted, on short windows: these tell apart what goes together over whole drives.
+    """
     onsets: Sequence[float] = ONSETS
     if ground.settings.scrub_onset is not None or "angle" not in start.richest:
         onsets = (chassis.scrub_onset,)
-    fitted = [
-        (*_linear_where_best(ground, replace(chassis, scrub_onset=onset), start, lag, over), onset)
+    fits = [
+        _iterated(ground, replace(chassis, scrub_onset=onset), start, start.windows)
         for onset in onsets
     ]
-    family, _, onset = min(fitted, key=lambda found: found[1])
-    return family, replace(chassis, scrub_onset=onset)
-
-
-def _linear_where_best(
-    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float, over: float
-) -> tuple[LawFamily, float]:
-    """The law by forces of one chassis, and the squares that it leaves.
-
-    Of a log that it fits as closely as only a simulation is fitted, on short windows: these tell
-    apart what goes together over whole drives.
-    """
-    family, error = _iterated(ground, chassis, start, lag, over, None)
-    typical = float(np.sqrt(np.mean(family.windows.energy**2)))
-    if np.sqrt(error / max(1, len(family.windows))) < _CLEAN * typical:
-        return _iterated(ground, chassis, start, lag, over, _SHORT)
-    return family, error
+    best = int(np.argmin([squares for _, squares in fits]))
+    (family, squares), chassis = fits[best], replace(chassis, scrub_onset=onsets[best])
+    typical = float(np.sqrt(np.mean(start.windows.energy**2)))
+    if np.sqrt(squares / len(start.windows)) < _CLEAN * typical:
+        length = max(_SHORT, 10.0 * start.samples.period)
+        family, _ = _iterated(ground, chassis, start, windows(start.samples, length))
+    return family, chassis
 
 
 def _iterated(
-    ground: LogGround, chassis: Chassis, start: LawFamily, lag: float, over: float,
-    length: float | None,
-) -> tuple[LawFamily, float]:  # fmt: skip
-    """The law on windows of one ``length`` [s], and the squares that it leaves.
+    ground: LogGround, chassis: Chassis, start: LawFamily, plain: Pieces
+) -> tuple[LawFamily, float]:
+    """The law on the windows of ``plain``, and the squares that it leaves.
 
     Gauss and Newton's iteration from the law by motion; runs that are left out are left out of the
     fit, not of the point at which the law was made linear.
     """
-    if length is not None:
-        length = max(length, 10.0 * start.samples.period)
-    plain = windows(start.samples, length)
     found = start.law(start.richest)
     scale = np.array([chassis.efficiency, 1.0, chassis.efficiency, 1.0, chassis.efficiency])
     parameters = scale * [found[term] for term in TERMS]
-    terms, why = start.richest, start.why
-    best, least = parameters, np.inf
+    best, least, family = parameters, np.inf, start
     for _ in range(_ROUNDS):
-        samples = samples_of(ground, _rates_at(chassis, parameters), lag=lag, over=over)
-        cut = windows(samples, length)
+        samples = start.samples.rated(rates_at(chassis, parameters))
+        cut = plain.rated(samples)
         terms, why = identified(cut, plain, turns=ground.turns)
+        sums = sums_of(cut)
         error = float(((cut.terms @ parameters + cut.rest - cut.energy) ** 2).sum())
         if error < least:
             best, least = parameters, error
-        law = sums_of(cut).law(terms)
+            family = LawFamily("forces", samples, cut, start.trips, sums, [tuple(terms)], why)
+        law = sums.law(terms)
         new = np.array([law[term] for term in TERMS])
         done = np.abs(new - parameters).max() <= 1e-4 * max(1.0, float(np.abs(new).max()))
         parameters = new if error <= least else 0.5 * (best + new)
         if done:
             break
-    samples = samples_of(ground, _rates_at(chassis, best), lag=lag, over=over)
-    cut = windows(samples, length)
-    return LawFamily(
-        "forces", samples, cut, trips(samples), sums_of(cut), [tuple(terms)], why
-    ), least  # fmt: skip
+    return replace(family, trips=trips(family.samples)), least
 
 
-def _rates_at(chassis: Chassis, parameters: Floats) -> Rates:
+def rates_at(chassis: Chassis, parameters: Floats) -> Rates:
+    """What the parameters (5,) of a law by forces multiply, near their values."""
+
     def rates(run: LoggedRun) -> tuple[Floats, Floats]:
         return linearised(chassis, run.time, run.v, run.omega, parameters)
 

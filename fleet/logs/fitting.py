@@ -53,14 +53,14 @@ class Sums:
 
     def law(self, terms: Sequence[str], weights: Floats | None = None) -> MotionLaw:
         """The law with these terms, each run ``weights`` (r,) times in it; by default once."""
+        weights = np.ones(len(self.runs)) if weights is None else weights
+        return MotionLaw(tuple(terms), tuple(self.laws(terms, weights[None])[0].tolist()))
+
+    def laws(self, terms: Sequence[str], weights: Floats) -> Floats:
+        """The coefficients (m, p) of laws with these terms, for ``weights`` (m, r) of the runs."""
         columns = [TERMS.index(name) for name in terms]
-        if weights is None:
-            square, product = self.square.sum(0), self.product.sum(0)
-        else:
-            square = np.tensordot(weights, self.square, 1)
-            product = weights @ self.product
-        found = non_negative(square[np.ix_(columns, columns)], product[columns])
-        return MotionLaw(tuple(terms), tuple(found.tolist()))
+        square = self.square[:, columns][:, :, columns]
+        return non_negative(np.tensordot(weights, square, 1), weights @ self.product[:, columns])
 
 
 def sums_of(pieces: Pieces) -> Sums:
@@ -76,20 +76,22 @@ def sums_of(pieces: Pieces) -> Sums:
 
 
 def non_negative(square: Floats, product: Floats) -> Floats:
-    """The c ≥ 0 that minimises ‖A c − y‖² of AᵀA (p, p) and Aᵀy (p,).
+    """The c ≥ 0 (m, p) that minimise ‖A c − y‖² for each AᵀA (m, p, p) and Aᵀy (m, p).
 
     Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23, on the Cholesky factor of
-    AᵀA with its columns scaled to one.
+    AᵀA with its columns scaled to one; where least squares alone are not negative, these.
     """
     from scipy.optimize import nnls
 
-    scale = np.sqrt(np.diag(square))
+    scale = np.sqrt(np.einsum("mii->mi", square))
     scale = np.where(scale > 0.0, scale, 1.0)
-    scaled = square / np.outer(scale, scale)
-    factor = np.linalg.cholesky(scaled + 1e-12 * np.eye(len(scale)))
-    target = np.linalg.solve(factor, product / scale)
-    found: Floats = nnls(factor.T, target)[0] / scale
-    return found
+    scaled = square / (scale[:, :, None] * scale[:, None, :]) + 1e-12 * np.eye(scale.shape[1])
+    asked = product / scale
+    found: Floats = np.linalg.solve(scaled, asked[:, :, None])[:, :, 0]
+    for row in np.flatnonzero((found < 0.0).any(axis=1)):
+        factor = np.linalg.cholesky(scaled[row])
+        found[row] = nnls(factor.T, np.linalg.solve(factor, asked[row]))[0]
+    return found / scale
 
 
 def identified(
@@ -217,7 +219,7 @@ def intervals(sums: Sums, terms: Sequence[str], seed: int = 0) -> Mapping[str, t
     if count < 2:
         return {term: (0.0, float("inf")) for term in terms}
     weights = rng.multinomial(count, np.full(count, 1.0 / count), RESAMPLES).astype(float)
-    drawn = np.array([sums.law(terms, row).coefficients for row in weights])
+    drawn = sums.laws(terms, weights)
     low, high = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE], axis=0)
     wider = widening(count)
     low = np.maximum(0.0, centre - wider * np.maximum(0.0, centre - low))

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fleet.logs.bases import LawFamily, by_forces, by_motion
+from fleet.logs.bases import LawFamily, by_forces, by_motion, rates_at
 from fleet.logs.fitting import (
     CONFIDENCE,
     FOLDS,
@@ -26,7 +26,7 @@ from fleet.logs.fitting import (
 from fleet.logs.forces import Chassis, chassis_of
 from fleet.logs.grounds import LogGround
 from fleet.logs.matching import reading_of
-from fleet.logs.sampling import FEWEST, Pieces
+from fleet.logs.sampling import FEWEST, TERMS, Pieces
 from fleet.scenario.errors import bad
 from fleet.study.statistics import Interval, wilson_interval
 
@@ -114,10 +114,7 @@ def judge(ground: LogGround) -> Judgement:
     Raises:
         BadInput: they never drive as far as a trip, or take no energy.
     """
-    lag, over, reading = reading_of(ground)
-    motion = by_motion(ground, lag, over)
-    _check(ground, motion)
-    forces, chassis = by_forces(ground, chassis_of(ground.settings), motion, lag, over)
+    motion, forces, chassis, reading = _families(ground)
     linear = _linear(motion.trips)
     nested = [
         LawJudged(
@@ -151,6 +148,25 @@ def judge(ground: LogGround) -> Judgement:
         _with_offset(motion, ground, intervals(forces.sums, forces.richest), nested[-1].law),
         linear, share, total, better, by_trip, by_total, _outcome(by_trip, better), reading, band,
     )  # fmt: skip
+
+
+def _families(ground: LogGround) -> tuple[LawFamily, LawFamily, Chassis, str]:
+    """Both families of laws, the chassis, and how slow power was matched with motion.
+
+    Where power is slow it is matched twice: inertia takes power before the robot goes fast, which
+    only the law by forces knows.
+    """
+    lag, over, reading = reading_of(ground)
+    motion = by_motion(ground, lag, over)
+    _check(ground, motion)
+    forces, chassis = by_forces(ground, chassis_of(ground.settings), motion)
+    if reading:
+        law = forces.law(forces.richest)
+        near = rates_at(chassis, np.array([law[term] for term in TERMS]))
+        lag, over, reading = reading_of(ground, near)
+        motion = by_motion(ground, lag, over)
+        forces, chassis = by_forces(ground, chassis, motion)
+    return motion, forces, chassis, reading
 
 
 def _check(ground: LogGround, motion: LawFamily) -> None:

@@ -46,8 +46,18 @@ class Samples:
     period: float  # [s] from reading to reading
     names: tuple[str, ...]  # of the runs
     files: int
+    readers: tuple[Reader, ...] = ()
     longest: float = LONGEST_TRIP  # [s] of a trip
     regrouped: str = ""  # what stands for runs, if these do not
+
+    def rated(self, basis: Rates) -> Samples:
+        """The same readings with the terms and the rest of another law."""
+        parts = [
+            reader.sums(np.column_stack(basis(reader.run)))[reader.driven]
+            for reader in self.readers
+        ]
+        both = np.concatenate(parts)
+        return replace(self, terms=both[:, :-1], rest=both[:, -1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +73,10 @@ class Pieces:
 
     def __len__(self) -> int:
         return len(self.run)
+
+    def rated(self, samples: Samples) -> Pieces:
+        """The same pieces of samples that have other terms."""
+        return _pieces(samples, self.of_sample)
 
     def term(self, name: str) -> Floats:
         """One of :data:`TERMS`, (k,)."""
@@ -103,53 +117,42 @@ Rates = Callable[[LoggedRun], tuple[Floats, Floats]]
 samples, or from each to the next (n - 1)."""
 
 
-def plain_rates(run: LoggedRun) -> tuple[Floats, Floats]:
-    """:func:`rates`, and no rest: the laws that are linear in what the robot did."""
-    return rates(run.v, run.omega), np.zeros(len(run.time))
-
-
-def samples_of(
-    ground: LogGround, basis: Rates = plain_rates, lag: float = 0.0, over: float = 0.0
-) -> Samples:
-    """The readings of all runs of a ground while they drive.
+def samples_of(ground: LogGround, lag: float = 0.0, over: float = 0.0) -> Samples:
+    """The readings of all runs of a ground while they drive, with :data:`TERMS`.
 
     Where power is read less often than motion, the rates of motion are taken at the readings:
     ``lag`` [s] before them, averaged ``over`` [s].
     """
     files = {file: number for number, file in enumerate(ground.files)}
-    parts, standing_power, stood = [], [], 0.0
-    for run in ground.runs:
-        moving, terms, step = _at_meter(run, basis(run), lag, over)
-        parts.append((run, moving, terms, step))
-        rests = moving == 0.0
-        standing_power.append(run.power[rests])
-        stood += float(step[rests].sum())
-    resting = np.concatenate(standing_power)
+    readers = tuple(Reader(run, lag, over) for run in ground.runs)
+    resting = np.concatenate([reader.run.power[reader.moving == 0.0] for reader in readers])
     standing = float(np.median(resting)) if len(resting) > 5 else float("nan")
+    rest = 0.0 if np.isnan(standing) else standing
     columns: list[list[Floats]] = [[] for _ in range(7)]
     drives = 0
-    for run, moving, terms, step in parts:
-        drives_here = moving > 0.0
-        begins = drives_here & ~np.r_[False, drives_here[:-1]]
+    for reader in readers:
+        run, step, moving, driven = reader.run, reader.step, reader.moving, reader.driven
+        begins = driven & ~np.r_[False, driven[:-1]]
         number = drives + np.cumsum(begins) - 1
         drives += int(begins.sum())
-        rest = 0.0 if np.isnan(standing) else standing
-        energy = (run.power - rest * (1.0 - moving)) * step
         first = np.maximum.accumulate(np.where(begins, np.arange(len(begins)), 0))
         began = run.meter[first] - 0.5 * step[first]
         found = (
-            np.full(len(step), files[run.file]), number, run.meter - began, step, terms[:, 6],
-            energy, terms[:, :6],
+            np.full(len(step), files[run.file]), number, run.meter - began, step,
+            reader.sums(np.abs(run.v)[:, None])[:, 0],
+            (run.power - rest * (1.0 - moving)) * step,
+            reader.sums(rates(run.v, run.omega)),
         )  # fmt: skip
         for column, values in zip(columns, found, strict=True):
-            column.append(values[drives_here])
-    run_, drive, since, step, metres, energy, both = (np.concatenate(column) for column in columns)
+            column.append(values[driven])
+    run_, drive, since, step, metres, energy, terms = (np.concatenate(each) for each in columns)
     samples = Samples(
-        run_.astype(np.intp), drive.astype(np.intp), since, step, metres, energy, both[:, :5],
-        both[:, 5], standing, stood,
+        run_.astype(np.intp), drive.astype(np.intp), since, step, metres, energy, terms,
+        np.zeros(len(step)), standing,
+        sum(float(reader.step[reader.moving == 0.0].sum()) for reader in readers),
         min(run.duration for run in ground.runs),
         float(np.median([np.median(np.diff(run.meter)) for run in ground.runs])),
-        tuple(ground.files), len(files),
+        tuple(ground.files), len(files), readers,
     )  # fmt: skip
     return _regrouped(samples) if len(samples.step) else samples
 
@@ -205,70 +208,84 @@ def _numbered(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _at_meter(
-    run: LoggedRun, rated: tuple[Floats, Floats], lag: float, over: float
-) -> tuple[Floats, Floats, Floats]:
-    """For each reading: the share of it driven, terms, rest and metres (k, 7), its length."""
-    edges = np.r_[run.meter[0], 0.5 * (run.meter[1:] + run.meter[:-1]), run.meter[-1]]
-    step: Floats = np.diff(edges)
-    driven = ~stands(run.time, run.v, run.omega)
-    columns = np.column_stack([*rated, np.abs(run.v[: len(rated[1])])])
-    if len(rated[1]) < len(run.v):
-        columns[:, -1] = 0.5 * np.abs(run.v[1:] + run.v[:-1])
-    if np.array_equal(run.meter, run.time):
-        moving: Floats = driven.astype(float)
-        terms = _at_instants(run.time, columns) * moving[:, None]
-        return moving, terms * step[:, None], step
-    moves = (driven[1:] | driven[:-1]).astype(float)
-    columns = _between_instants(run.time, columns) * moves[:, None]
-    averages = Averages(run.time, np.column_stack([moves, columns]))
-    if run.slow:
-        half = 0.5 * max(over, float(np.median(np.diff(run.time))))
-        averaged = averages.between(run.meter - lag - half, run.meter - lag + half)
-    else:
-        averaged = averages.between(edges[:-1], edges[1:])
-    averaged[averaged[:, 0] < _TOUCHED] = 0.0
-    return averaged[:, 0], averaged[:, 1:] * step[:, None], step
+class Reader:
+    """The readings of a run's power, and what its motion was while each was taken."""
+
+    def __init__(self, run: LoggedRun, lag: float, over: float) -> None:
+        self.run = run
+        edges = np.r_[run.meter[0], 0.5 * (run.meter[1:] + run.meter[:-1]), run.meter[-1]]
+        self.step: Floats = np.diff(edges)  # (k,) [s] that each stands for
+        driven = ~stands(run.time, run.v, run.omega)
+        self._spans: Spans | None = None
+        if np.array_equal(run.meter, run.time):
+            self._moves = driven.astype(float)
+            self.moving: Floats = self._moves  # (k,) the share of each that it drives
+        else:
+            if run.slow:
+                half = 0.5 * max(over, float(np.median(np.diff(run.time))))
+                low, high = run.meter - lag - half, run.meter - lag + half
+            else:
+                low, high = edges[:-1], edges[1:]
+            self._spans = Spans(run.time, low, high)
+            self._moves = (driven[1:] | driven[:-1]).astype(float)
+            self.moving = self._spans.means(self._moves[:, None])[:, 0]
+            self.moving[self.moving < _TOUCHED] = 0.0
+        self.driven: NDArray[np.bool_] = self.moving > 0.0  # (k,)
+
+    def sums(self, values: Floats) -> Floats:
+        """Values at the samples (n, p), or between them (n - 1, p), over each reading (k, p)."""
+        if self._spans is None:
+            values = _at_instants(self.run.time, values) * self._moves[:, None]
+        else:
+            values = between_instants(values, len(self.run.time)) * self._moves[:, None]
+            values = self._spans.means(values)
+        sums: Floats = values * (self.step * self.driven)[:, None]
+        return sums
 
 
 def _at_instants(time: Floats, values: Floats) -> Floats:
     """Values (n, p) at ``time`` (n,), if they are those between the instants (n - 1, p)."""
     if len(values) == len(time):
         return values
-    weight = np.diff(time)[:, None]
-    none = np.zeros((1, 1))
-    before, after = np.vstack([none, weight]), np.vstack([weight, none])
-    first, last = np.vstack([values[:1], values]), np.vstack([values, values[-1:]])
-    mean: Floats = (before * first + after * last) / (before + after)
-    return mean
+    weight = np.diff(time)
+    share = (weight[:-1] / (weight[1:] + weight[:-1]))[:, None]
+    inside = values[1:] + share * (values[:-1] - values[1:])
+    return np.concatenate([values[:1], inside, values[-1:]])
 
 
-def _between_instants(time: Floats, values: Floats) -> Floats:
-    """Values (n - 1, p) between instants, the means of their ends if they are at ``time`` (n,)."""
-    return 0.5 * (values[1:] + values[:-1]) if len(values) == len(time) else values
+def between_instants(values: Floats, count: int) -> Floats:
+    """Values (n - 1, p) between instants, the means of their ends if there are ``count``."""
+    return 0.5 * (values[1:] + values[:-1]) if len(values) == count else values
 
 
-class Averages:
-    """Means of signals, at instants (n, p) or between these (n - 1, p), over spans of time."""
+class Spans:
+    """Spans of time, from ``low`` to ``high`` (k,) [s], over which signals are averaged."""
 
-    def __init__(self, time: Floats, values: Floats) -> None:
-        grown = _between_instants(time, values) * np.diff(time)[:, None]
+    def __init__(self, time: Floats, low: Floats, high: Floats) -> None:
+        begin, end = time[0], time[-1]
         self._time = time
-        self._so_far = np.vstack([np.zeros(values.shape[1]), np.cumsum(grown, axis=0)])
-
-    def between(self, low: Floats, high: Floats) -> Floats:
-        """The means (k, p) from ``low`` to ``high`` (k,) [s], held to the span of the signals."""
-        begin, end = self._time[0], self._time[-1]
         low, high = np.clip(low, begin, end - 1e-3), np.clip(high, begin + 1e-3, end)
-        return (self._at(high) - self._at(low)) / (high - low)[:, None]
+        self._length = (high - low)[:, None]
+        self._low, self._high = self._place(low), self._place(high)
 
-    def _at(self, time: Floats) -> Floats:
-        """What signals add up to until ``time`` (k,), (k, p)."""
-        place = np.clip(np.searchsorted(self._time, time, "right") - 1, 0, len(self._time) - 2)
+    def means(self, values: Floats) -> Floats:
+        """The means (k, p) of signals at instants (n, p), or between these (n - 1, p)."""
+        time = self._time
+        grown = between_instants(values, len(time)) * np.diff(time)[:, None]
+        so_far = np.zeros((len(time), values.shape[1]))
+        np.cumsum(grown, axis=0, out=so_far[1:])
+        low, high = (
+            so_far[place] + share * (so_far[place + 1] - so_far[place])
+            for place, share in (self._low, self._high)
+        )
+        means: Floats = (high - low) / self._length
+        return means
+
+    def _place(self, at: Floats) -> tuple[Numbers, Floats]:
+        """Between which instants times (k,) are, and how far on."""
+        place = np.clip(np.searchsorted(self._time, at, "right") - 1, 0, len(self._time) - 2)
         begin = self._time[place]
-        share = ((time - begin) / (self._time[place + 1] - begin))[:, None]
-        so_far: Floats = self._so_far[place] * (1.0 - share) + self._so_far[place + 1] * share
-        return so_far
+        return place, ((at - begin) / (self._time[place + 1] - begin))[:, None]
 
 
 def windows(samples: Samples, length: float | None = None) -> Pieces:

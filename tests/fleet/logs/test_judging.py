@@ -124,7 +124,7 @@ def test_least_squares_are_those_of_scipy():
     for _ in range(20):
         matrix, values = rng.standard_normal((30, 4)), rng.standard_normal(30)
         matrix *= [1.0, 1e3, 1e-2, 5.0]
-        found = non_negative(matrix.T @ matrix, matrix.T @ values)
+        found = non_negative((matrix.T @ matrix)[None], (matrix.T @ values)[None])[0]
         assert found == pytest.approx(nnls(matrix, values)[0], rel=1e-5, abs=1e-9)
 
 
