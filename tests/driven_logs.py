@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 TRUTH = {"distance": 20.0, "time": 5.0, "angle": 12.0, "turning": 3.0}  # J/m, W, J/rad, W
@@ -57,3 +59,24 @@ def folder_of(path, runs=6, change=lambda columns: columns, **keys):
     for seed in range(runs):
         table(path / f"run-{seed}.csv", change(logged(seed, **keys)))
     return path
+
+
+FLEETS = {"small": (12, 10.0), "pioneer": (12, 14.0), "husky": (8, 20.0), "ideal": (12, 10.0)}
+
+
+def exported(folder, preset, motion="path", rounds=16):
+    """A ground of trips at three speeds, and the robot that drove them."""
+    from fleet.assembly import run
+    from fleet.logs.exporting import TripExport
+    from fleet.logs.gathering import gather
+    from fleet.scenario.loading import scenario_from
+
+    robots, side = FLEETS[preset]
+    scenario = scenario_from({
+        "robots": robots, "rounds": rounds, "motion": motion, "range": 30.0,
+        "world": {"width": side, "height": side}, "robot": {"preset": preset, "capacity": 1e5},
+    })  # fmt: skip
+    for number, share in enumerate((1.0, 0.7, 0.4)):
+        robot = replace(scenario.robot, cruise=share * scenario.robot.cruise)
+        run(replace(scenario, robot=robot), [TripExport(folder, robot, run=number)])
+    return gather([folder])[0], scenario.robot

@@ -28,6 +28,8 @@ _LOG = (
     click.option("--mass", type=float, help="In kilograms."),
     click.option("--offset", type=float, help="Of the battery's current, in amperes."),
     click.option("--electronics", type=float, help="Constant power not in the log, in watts."),
+    click.option("--bodies", is_flag=True,
+                 help="Drive simulated bodies on the recorded speeds, and say what they take."),
     click.option("--within", type=float, help="Error that a trip may have, in percent.  [10]"),
 )  # fmt: skip
 
@@ -119,7 +121,7 @@ def _only_with_log(paths: tuple[Path, ...], told: dict[str, Any]) -> None:
         said = "is no scenario, which ends in .toml; logs of a real robot are given with --log"
         raise bad(str(paths[0]), said)
     for name, value in told.items():
-        if value not in ((), None):
+        if value not in ((), None, False):
             option = "log-column" if name == "columns" else name
             raise bad(f"--{option}", "says something of logs; expected it together with --log")
 
@@ -129,12 +131,17 @@ def _judge_logs(paths: tuple[Path, ...], out: Path, told: dict[str, Any]) -> Non
     from fleet.logs.gathering import gather
     from fleet.logs.judging import judge
     from fleet.logs.log_report import write
+    from fleet.logs.redriving import redrive, redriven_sentence
 
+    driven = told.pop("bodies")
     judgements = [judge(ground) for ground in gather(paths, _settings(told))]
     for judgement in judgements:
         folder = out / judgement.ground.name if len(judgements) > 1 else out
-        page = write(judgement, folder, this_command())
+        bodies = redrive(judgement) if driven else None
+        page = write(judgement, folder, this_command(), bodies)
         _print_judgement(judgement)
+        if bodies is not None:
+            click.echo(f"  {redriven_sentence(bodies)}")
         click.echo(f"Report: {page}\n")
     if len(judgements) > 1:
         from fleet.logs.comparing import slopes_sentence

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import sqrt
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from fleet.logs.asking import LogSettings
 from fleet.logs.clocks import ascending, seconds, unfolded
 from fleet.logs.electrics import power_of
 from fleet.logs.grounds import LoggedRun
+from fleet.logs.sampling import STILL_SPEED
 from fleet.logs.signals import Signals
 from fleet.scenario.errors import bad
 
@@ -21,6 +23,8 @@ Floats = NDArray[np.float64]
 SHORTEST = 5.0  # [s] of a stretch that is kept
 SPAN = 0.5  # [s] over which noisy speeds are averaged
 _NOISE = {"v": 0.01, "omega": 0.02}  # [m/s], [rad/s] from which they are
+_SURELY = 3.0  # times its noise: less turning is none, or noise alone would cost scrub
+_STRAIGHT = 3e-3  # [rad/s] below which it does not matter
 _HELD = 20  # samples of the same speed: a command rather than a measurement
 _DENSER = 0.5  # steps of motion from one power to the next: it is averaged over these
 
@@ -281,6 +285,12 @@ def _smoothed(runs: list[LoggedRun]) -> list[str]:
                 run.file, run.time, values["v"], values["omega"], run.meter, run.power
             )
         notes.append(f"{name} is noisy (± {noise:.2g} {unit}): averaged over {SPAN:g} s")
+    noise = _SURELY * float(np.median([_noise(run.omega) for run in runs]))
+    if noise > _STRAIGHT:
+        for number, run in enumerate(runs):
+            straight = (np.abs(run.omega) < noise) & (np.abs(run.v) > STILL_SPEED)
+            runs[number] = replace(run, omega=np.where(straight, 0.0, run.omega))
+        notes.append(f"turning of less than its noise, {noise:.2g} rad/s, is none while it drives")
     return notes
 
 

@@ -207,11 +207,20 @@ def simplest(errors: Sequence[float]) -> int:
     return best
 
 
-def intervals(sums: Sums, terms: Sequence[str], seed: int = 0) -> Mapping[str, tuple[float, float]]:
+def unsure(terms: Sequence[str], why: Mapping[str, str]) -> tuple[str, ...]:
+    """Terms that are not fitted because the log cannot tell them from others, and yet may be."""
+    apart = {"square": "time" in terms, "turning": "angle" in terms}
+    return tuple(term for term, may_be in apart.items() if term in why and may_be)
+
+
+def intervals(
+    sums: Sums, terms: Sequence[str], perhaps: Sequence[str] = (), seed: int = 0
+) -> Mapping[str, tuple[float, float]]:
     """95 % intervals of a law's coefficients, by drawing whole runs again.
 
     Percentiles of :data:`RESAMPLES` laws, spread about the estimate as the t distribution is wider
-    than the normal one for so many runs.
+    than the normal one for so many runs. They have room for what the coefficients would be with the
+    terms ``perhaps``, which a log does not tell from these.
     """
     rng = np.random.default_rng(seed)
     count = len(sums.runs)
@@ -219,8 +228,11 @@ def intervals(sums: Sums, terms: Sequence[str], seed: int = 0) -> Mapping[str, t
     if count < 2:
         return {term: (0.0, float("inf")) for term in terms}
     weights = rng.multinomial(count, np.full(count, 1.0 / count), RESAMPLES).astype(float)
-    drawn = sums.laws(terms, weights)
-    low, high = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE], axis=0)
+    low, high = np.full(len(terms), np.inf), np.full(len(terms), -np.inf)
+    for law in dict.fromkeys(((*terms,), (*terms, *perhaps))):
+        drawn = sums.laws(law, weights)[:, : len(terms)]
+        ends = np.quantile(drawn, [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE], axis=0)
+        low, high = np.minimum(low, ends[0]), np.maximum(high, ends[1])
     wider = widening(count)
     low = np.maximum(0.0, centre - wider * np.maximum(0.0, centre - low))
     high = centre + wider * np.maximum(0.0, high - centre)

@@ -21,6 +21,7 @@ from fleet.logs.fitting import (
     errors_left_out,
     intervals,
     simplest,
+    unsure,
     widening,
 )  # fmt: skip
 from fleet.logs.forces import Chassis, chassis_of
@@ -145,7 +146,9 @@ def judge(ground: LogGround) -> Judgement:
         ground, motion, forces, chassis, nested, best,
         _with_offset(motion, ground, intervals(motion.sums, best.terms), best.law),
         nested[-1],
-        _with_offset(motion, ground, intervals(forces.sums, forces.richest), nested[-1].law),
+        _with_offset(motion, ground, intervals(
+            forces.sums, forces.richest, unsure(forces.richest, forces.why)
+        ), nested[-1].law),
         linear, share, total, better, by_trip, by_total, _outcome(by_trip, better), reading, band,
     )  # fmt: skip
 
@@ -162,8 +165,8 @@ def _families(ground: LogGround) -> tuple[LawFamily, LawFamily, Chassis, str]:
     forces, chassis = by_forces(ground, chassis_of(ground.settings), motion)
     if reading:
         law = forces.law(forces.richest)
-        near = rates_at(chassis, np.array([law[term] for term in TERMS]))
-        lag, over, reading = reading_of(ground, near)
+        rates = rates_at(chassis, np.array([law[term] for term in TERMS]))
+        lag, over, reading = reading_of(ground, rates)
         motion = by_motion(ground, lag, over)
         forces, chassis = by_forces(ground, chassis, motion)
     return motion, forces, chassis, reading
@@ -211,13 +214,13 @@ def _linear(trips: Pieces) -> LeftOut:
 
 def _left_out(family: LawFamily, terms: Law) -> LeftOut:
     predicted = np.empty(len(family.trips))
-    for among in _folds(family):
+    for among in folds(family):
         mine = _asked(family, among)
         predicted[mine] = family.law(terms, among).predict(family.trips.take(mine))
     return LeftOut(family.trips.run, family.trips.energy, predicted)
 
 
-def _folds(family: LawFamily) -> Iterator[Mask]:
+def folds(family: LawFamily) -> Iterator[Mask]:
     """The runs (r,) that are left in, each run left out once: alone, or with few of very many."""
     count = len(family.sums.runs)
     for out in np.array_split(np.arange(count), min(count, FOLDS)):
@@ -235,7 +238,7 @@ def _asked(family: LawFamily, among: Mask) -> Mask:
 def _best(motion: LawFamily, nested: Sequence[LawJudged]) -> LawJudged:
     """The law of motion that runs choose; for those that are left out, without them."""
     predicted = np.empty(len(motion.trips))
-    for among in _folds(motion):
+    for among in folds(motion):
         terms = motion.laws[_chosen(motion, among)]
         mine = _asked(motion, among)
         predicted[mine] = motion.law(terms, among).predict(motion.trips.take(mine))

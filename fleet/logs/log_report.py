@@ -12,6 +12,7 @@ import numpy as np
 
 from fleet.logs.judging import NEEDED, Judgement, LeftOut
 from fleet.logs.presets import preset_text
+from fleet.logs.redriving import Redriven, redriven_sentence
 from fleet.logs.sampling import TERMS, Pieces
 from fleet.logs.sentences import (
     FORCES,
@@ -27,8 +28,12 @@ from fleet.scenario.errors import bad
 PRESET, REPORT, TRIPS, WINDOWS = "preset.toml", "report.html", "trips.csv", "windows.csv"
 
 
-def write(judgement: Judgement, out: Path, command: str = "") -> Path:
+def write(
+    judgement: Judgement, out: Path, command: str = "", bodies: Redriven | None = None
+) -> Path:
     """Write ``report.html``, ``preset.toml``, ``trips.csv`` and ``windows.csv`` into a folder.
+
+    ``bodies``: what bodies took that were driven on held-out trips, if any were.
 
     Returns the report's path.
 
@@ -41,7 +46,7 @@ def write(judgement: Judgement, out: Path, command: str = "") -> Path:
         (out / PRESET).write_text(preset, "utf-8")
         _write_trips(judgement, out / TRIPS)
         _write_windows(judgement, out / WINDOWS)
-        (out / REPORT).write_text(_page(judgement, preset, command), "utf-8")
+        _write_page(judgement, out / REPORT, preset, command, bodies)
     except OSError as error:
         raise bad("--out", f"{str(out)!r} cannot be written to: {error.strerror}") from error
     return out / REPORT
@@ -98,11 +103,12 @@ def _write(path: Path, pieces: Pieces, judgement: Judgement, more: dict[str, Any
             writer.writerow([name, *(f"{value:.6g}" for value in values)])
 
 
-def _page(judgement: Judgement, preset: str, command: str) -> str:
-    from jinja2 import Environment, PackageLoader
-
+def _write_page(
+    judgement: Judgement, path: Path, preset: str, command: str, bodies: Redriven | None
+) -> None:
     from fleet.logs.drawings import FIGURES
-    from fleet.study.report.style import SERIES, SERIES_DARK, in_style, inline, svg_of
+    from fleet.study.report.page import write_page
+    from fleet.study.report.style import in_style, inline, svg_of
     from fleet.study.version import environment
 
     figures = []
@@ -110,11 +116,9 @@ def _page(judgement: Judgement, preset: str, command: str) -> str:
         with in_style(f"log-{name}"):
             svg = inline(svg_of(draw(judgement)))
         figures.append({"name": name, "title": title, "caption": caption, "svg": svg})
-    template = Environment(
-        loader=PackageLoader("fleet.logs", "."), autoescape=True, trim_blocks=True,
-        lstrip_blocks=True,
-    ).get_template("log_report.html.j2")  # fmt: skip
-    return template.render(
+    write_page(
+        path, "log_report.html.j2", "fleet.logs",
+        title=f"Is energy linear in distance? {judgement.ground.name}",
         name=judgement.ground.name,
         summary=summary_sentence(judgement),
         answer=LEADS[judgement.outcome],
@@ -132,8 +136,8 @@ def _page(judgement: Judgement, preset: str, command: str) -> str:
         longest=f"{judgement.motion.samples.longest:g}",
         command=command,
         made_by=environment(),
-        palette=list(zip(SERIES, SERIES_DARK, strict=True)),
-    )
+        bodies=redriven_sentence(bodies) if bodies else "",
+    )  # fmt: skip
 
 
 def closing_sentence(judgement: Judgement) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.logs.grounds import LoggedRun, LogGround
-from fleet.logs.sampling import Rates, Spans, between_instants, rates, stands
+from fleet.logs.sampling import Rates, Spans, between_instants, rates, stands, to_rest
 
 Floats = NDArray[np.float64]
 
@@ -39,9 +39,7 @@ def reading_of(ground: LogGround, basis: Rates = plain) -> tuple[float, float, s
     }
     usual = (float(lags[np.argmin(np.abs(lags - 0.5 * period))]), period)
     best = min(errors, key=errors.__getitem__)
-    if errors[best] > _CLEARLY * errors[usual]:
-        best = usual
-    lag, over = best
+    lag, over = best if errors[best] <= _CLEARLY * errors[usual] else usual
     if basis is not plain:
         lag = _finer(seen, lag, over, float(lags[1] - lags[0]))
     what = f"the mean over {over:.2g} s" if over else "the value of a moment"
@@ -62,8 +60,8 @@ def _often(period: float) -> str:
 
 def _while_moving(run: LoggedRun, basis: Rates) -> tuple[Floats, Floats]:
     """The terms (n - 1, p) while the robot moves, and the rest (n - 1, 1)."""
-    still = stands(run.time, run.v, run.omega)
-    moves = (~(still[1:] & still[:-1])).astype(float)[:, None]
+    driven = to_rest(~stands(run.time, run.v, run.omega), run.v, run.omega)
+    moves = (driven[1:] | driven[:-1]).astype(float)[:, None]
     terms, rest = basis(run)
     count = len(run.time)
     return (

@@ -112,6 +112,23 @@ def stands(time: Floats, v: Floats, omega: Floats) -> NDArray[np.bool_]:
     return still
 
 
+def to_rest(driven: NDArray[np.bool_], v: Floats, omega: Floats) -> NDArray[np.bool_]:
+    """Drives (n,) with their first and last moments, in which the robot is slower than standing.
+
+    Launching takes the most power; it counts as driving from where the speeds begin to rise.
+    """
+    pace = np.abs(v) / STILL_SPEED + np.abs(omega) / STILL_RATE
+    whole = driven.copy()
+    edges = np.flatnonzero(driven[1:] != driven[:-1])
+    for edge in edges:
+        outward = -1 if driven[edge + 1] else 1
+        at = edge if outward < 0 else edge + 1
+        while 0 < at < len(pace) - 1 and 0.0 < pace[at] < pace[at - outward] and not driven[at]:
+            whole[at] = True
+            at += outward
+    return whole
+
+
 Rates = Callable[[LoggedRun], tuple[Floats, Floats]]
 """For a run of n samples: what coefficients multiply (n, 5), and what they do not (n,) [W]; at the
 samples, or from each to the next (n - 1)."""
@@ -212,7 +229,7 @@ class Reader:
     """The readings of a run's power, and what its motion was while each was taken."""
 
     def __init__(self, run: LoggedRun, lag: float, over: float) -> None:
-        self.run = run
+        self.run, self.lag = run, lag if run.slow else 0.0
         edges = np.r_[run.meter[0], 0.5 * (run.meter[1:] + run.meter[:-1]), run.meter[-1]]
         self.step: Floats = np.diff(edges)  # (k,) [s] that each stands for
         driven = ~stands(run.time, run.v, run.omega)
@@ -227,6 +244,7 @@ class Reader:
             else:
                 low, high = edges[:-1], edges[1:]
             self._spans = Spans(run.time, low, high)
+            driven = to_rest(driven, run.v, run.omega)
             self._moves = (driven[1:] | driven[:-1]).astype(float)
             self.moving = self._spans.means(self._moves[:, None])[:, 0]
             self.moving[self.moving < _TOUCHED] = 0.0
