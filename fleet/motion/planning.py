@@ -6,6 +6,7 @@ Importing this module loads numba.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from math import ceil, cos, isfinite, nan, sin
 from typing import Any, NamedTuple
 
@@ -14,10 +15,10 @@ from numpy.typing import NDArray
 
 from fleet.motion.floor import lay_out
 from fleet.motion.kernels.grid import put
-from fleet.motion.kernels.mapped import plan_mapped
 from fleet.motion.kernels.plan import NO_PATH, move_in, plan
 from fleet.motion.kernels.records import LINE, NOBODY, SEGMENT
-from fleet.motion.roadmaps import is_ragged, roadmap_of
+from fleet.motion.meshed import plan_on_meshes
+from fleet.motion.meshes import is_ragged, mesh_of
 from protocols.compiled import direct
 from protocols.messages import Point, RobotId
 from worlds.arena import Arena
@@ -60,8 +61,8 @@ class Planner:
     ) -> None:
         self.floor = lay_out(arena, radius, len(points))
         self._clearances = np.array(clearances)
-        self._arena, self._radius = arena, radius
         self.ragged = is_ragged(arena)
+        self._mesh_with = cache(lambda clearance: mesh_of(arena, radius, clearance, len(points)))
         self._make_room(32)
         self._count = len(points)
         self._plan, self._put = direct(plan), direct(put)
@@ -85,7 +86,7 @@ class Planner:
             return known
         if not all(map(isfinite, site)):
             raise ValueError(f"the site of robot {robot} is {site}; expected two numbers [m]")
-        look = self._on_roadmaps if self.ragged else self._among_corners
+        look = self._on_meshes if self.ragged else self._among_corners
         while True:
             end, x, y, length = look(robot, position, site)
             if end <= len(self._segments):
@@ -101,19 +102,13 @@ class Planner:
     ) -> tuple[int, float, float, float]:
         return self._plan(self.floor, robot, *position, *site, self._clearances, self._segments)
 
-    def _on_roadmaps(
+    def _on_meshes(
         self, robot: RobotId, position: Point, site: Point
     ) -> tuple[int, float, float, float]:
-        """By the first roadmap on which there is a path: those with less clearance are made when
-        they are needed.
-        """
-        ends = np.array([*position, *site])
-        for clearance in self._clearances.tolist():
-            roadmap = roadmap_of(self._arena, self._radius, clearance)
-            found = plan_mapped(self.floor, roadmap, robot, ends, clearance, self._segments)
-            if found[0] != NO_PATH:
-                break
-        return found
+        clearances = self._clearances.tolist()
+        return plan_on_meshes(
+            self._mesh_with, self.floor, clearances, robot, position, site, self._segments
+        )
 
     def plan_among(
         self, stopped: Sequence[tuple[RobotId, Point]], robot: RobotId, position: Point, site: Point

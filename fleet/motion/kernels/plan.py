@@ -77,7 +77,7 @@ def disc_hit(segment, disc, radius):
 
 
 @kernel
-def _edge_hit(segment, edge, radius):
+def edge_hit(segment, edge, radius):
     """Whether a segment of path comes nearer to a polygon's side than ``radius`` [m]."""
     if segment.kind == LINE:
         bx, by = segment.x + segment.length * segment.cos, segment.y + segment.length * segment.sin
@@ -128,7 +128,7 @@ def _obstruct(floor, me, segments, first, last, clearance, known, count):
         for k in range(near):
             which = floor.near[k]
             edge = floor.edges[which]
-            if not floor.marks[offset + which] and _edge_hit(segment, edge, edge.core + margin):
+            if not floor.marks[offset + which] and edge_hit(segment, edge, edge.core + margin):
                 count = _avoid_disc(floor, offset + which, known, count)
                 count = _avoid_disc(floor, edge.a, known, count)
                 count = _avoid_disc(floor, edge.b, known, count)
