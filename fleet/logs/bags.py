@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import struct
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fleet.logs.signals import MOTION, POWER, ROLES, Signals, told_column
-from fleet.scenario.errors import bad
+from fleet.scenario.errors import BadInput, bad
 
 Floats = NDArray[np.float64]
 
@@ -82,8 +83,10 @@ def _opened(anyreader: Any, path: Path) -> Iterator[Any]:
     try:
         with anyreader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
             yield reader
-    except ValueError:
-        raise  # bad input, from us
+    except BadInput:
+        raise
+    except (UnicodeDecodeError, EOFError, struct.error) as error:
+        raise bad("--log", f"{path}: is damaged, or no bag ({error})") from error
     except Exception as error:
         if type(error).__module__.partition(".")[0] not in {"rosbags", "apsw", "lz4", "zstandard"}:
             raise

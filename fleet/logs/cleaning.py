@@ -14,7 +14,6 @@ from fleet.logs.asking import LogSettings
 from fleet.logs.clocks import ascending, seconds, unfolded
 from fleet.logs.electrics import power_of
 from fleet.logs.grounds import LoggedRun
-from fleet.logs.sampling import STILL_SPEED
 from fleet.logs.signals import Signals
 from fleet.scenario.errors import bad
 
@@ -287,10 +286,10 @@ def _smoothed(runs: list[LoggedRun]) -> list[str]:
         notes.append(f"{name} is noisy (± {noise:.2g} {unit}): averaged over {SPAN:g} s")
     noise = _SURELY * float(np.median([_noise(run.omega) for run in runs]))
     if noise > _STRAIGHT:
-        for number, run in enumerate(runs):
-            straight = (np.abs(run.omega) < noise) & (np.abs(run.v) > STILL_SPEED)
-            runs[number] = replace(run, omega=np.where(straight, 0.0, run.omega))
-        notes.append(f"turning of less than its noise, {noise:.2g} rad/s, is none while it drives")
+        runs[:] = [
+            replace(run, omega=np.where(np.abs(run.omega) < noise, 0.0, run.omega)) for run in runs
+        ]
+        notes.append(f"turning of less than its noise, {noise:.2g} rad/s, is taken for none")
     return notes
 
 

@@ -16,6 +16,7 @@ from fleet.study.statistics import Interval
 Floats = NDArray[np.float64]
 
 _RESERVE = 1.5  # what wheels can push, of the most they pushed in the log
+_ROUNDED = 1.0 + 3e-5  # so that what heat takes at standstill is still less, written in six digits
 _METRES = 100.0  # that the battery lasts for; no log tells its capacity
 
 
@@ -69,7 +70,7 @@ def preset_keys(judgement: Judgement) -> list[PresetKey]:
         Interval(float(x), float(a), float(b)) for x, (a, b) in zip(value, bounds, strict=True)
     ]
     extra = settings.electronics
-    constant = Interval(*(x + extra for x in of_power[2]))
+    constant = Interval(*(x * _ROUNDED + extra for x in of_power[2]))
     told_mass = "" if settings.mass is not None else "not told: --mass KG"
     told_track = "" if settings.track is not None else "not told: --track M"
     standing = max(0.0, samples.standing) if np.isfinite(samples.standing) else 0.0

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import struct
+
 import numpy as np
 import pytest
 from driven_logs import drive, power_of
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag1 import Writer as Ros1Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from fleet.logs.asking import LogSettings
@@ -58,10 +61,14 @@ def battery(time, current):
                    cell_voltage=empty, cell_temperature=empty)  # fmt: skip
 
 
-def bag(path, seed=0, topics=("/odom",), storage=StoragePlugin.MCAP, current=None, seconds=60.0):
+def bag(path, seed=0, topics=("/odom",), storage=StoragePlugin.MCAP, current=None, seconds=60.0,
+        compressed=None):  # fmt: skip
     time, v, omega = drive(seed, seconds=seconds)
     amperes = power_of(v, omega) / 12.0 if current is None else np.full(len(v), current)
-    with Writer(path, version=9, storage_plugin=storage) as writer:
+    writer = Writer(path, version=9, storage_plugin=storage)
+    if compressed is not None:
+        writer.set_compression(compressed, CompressionFormat.ZSTD)
+    with writer:
         ways = [writer.add_connection(topic, ODOMETRY, typestore=STORE) for topic in topics]
         state = writer.add_connection("/battery", BATTERY, typestore=STORE)
         for k, t in enumerate(time + 1000.0):
@@ -131,3 +138,82 @@ def test_what_is_no_bag_is_refused(tmp_path):
     (tmp_path / "log.bag").write_bytes(b"hello")
     with pytest.raises(BadInput, match=r"as a bag|damaged"):
         read_bag(tmp_path / "log.bag")
+
+
+def ros1_bag(path, compression=None):
+    """The same drive as ROS 1 leaves it: its headers count, its stamps are in nanoseconds."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    time, v, omega = drive(0, seconds=20.0)
+    writer = Ros1Writer(path)
+    if compression is not None:
+        writer.set_compression(compression)
+    with writer:
+        way = writer.add_connection("/odom", ODOMETRY, typestore=store)
+        state = writer.add_connection("/battery", BATTERY, typestore=store)
+        for k, t in enumerate(time + 1000.0):
+            for connection, said in (
+                (way, odometry(t, v[k], omega[k])), (state, battery(t, -1.0 - abs(v[k])))
+            ):  # fmt: skip
+                kind = connection.msgtype
+                raw = store.serialize_ros1(as_ros1(store, kind, said), kind)
+                writer.write(connection, round(t * 1e9), raw)
+    return path
+
+
+def as_ros1(store, kind, said):
+    """A message with the fields that ROS 1 has of it."""
+    values = {}
+    for name, (form, detail) in store.get_msgdef(kind).fields:
+        value = getattr(said, name, 0)
+        values[name] = (
+            as_ros1(store, detail, value) if form.name == "NAME" and value != 0 else value
+        )
+    return store.types[kind](**values)
+
+
+@pytest.mark.parametrize("compression", [None, *Ros1Writer.CompressionFormat])
+def test_bags_of_ros_1_are_read_compressed_or_not(tmp_path, compression):
+    signals = read_bag(ros1_bag(tmp_path / "log.bag", compression))
+    _, v, omega = drive(0, seconds=20.0)
+    assert signals.motion["v"] == pytest.approx(v)
+    assert signals.motion["omega"] == pytest.approx(omega)
+    assert signals.power["current"] == pytest.approx(-1.0 - np.abs(v), rel=1e-6)
+
+
+@pytest.mark.parametrize("mode", list(CompressionMode)[1:])
+def test_compressed_bags_of_ros_2_are_read_by_their_folder(tmp_path, mode):
+    storage = StoragePlugin.MCAP if mode is CompressionMode.STORAGE else StoragePlugin.SQLITE3
+    signals = read_bag(bag(tmp_path / "bag", seconds=20.0, compressed=mode, storage=storage))
+    assert signals.motion["v"] == pytest.approx(drive(0, seconds=20.0)[1])
+
+
+def test_a_text_that_is_called_a_bag_is_one_sentence(tmp_path):
+    path = tmp_path / "log.bag"
+    for content in (b"time,v\n0,1\n", b"#ROSBAG V2.0\n" + struct.pack("<II", 8, 4) + b"\xff=ab"):
+        path.write_bytes(content)
+        with pytest.raises(BadInput) as error:
+            read_bag(path)
+        assert "\n" not in str(error.value)
+
+
+def test_joints_are_wheels_if_they_are_told_and_commands_are_no_motion(tmp_path):
+    time, v, _ = drive(0, seconds=20.0)
+    joints, twist = "sensor_msgs/msg/JointState", "geometry_msgs/msg/Twist"
+    with Writer(tmp_path / "bag", version=9) as writer:
+        wheels = writer.add_connection("/joint_states", joints, typestore=STORE)
+        command = writer.add_connection("/cmd_vel", twist, typestore=STORE)
+        state = writer.add_connection("/battery", BATTERY, typestore=STORE)
+        for k, t in enumerate(time + 1000.0):
+            stamp = round(t * 1e9)
+            turning = message(joints, header=header(t), name=["left", "right"],
+                              velocity=np.full(2, v[k] / 0.13))  # fmt: skip
+            writer.write(wheels, stamp, STORE.serialize_cdr(turning, joints))
+            wish = message(twist, linear=vector(x=9.0), angular=vector())
+            writer.write(command, stamp, STORE.serialize_cdr(wish, twist))
+            writer.write(state, stamp, STORE.serialize_cdr(battery(t, -1.0), BATTERY))
+    told = (f"v_{side}=/joint_states.velocity.{side}*0.13" for side in ("left", "right"))
+    assert read_bag(tmp_path / "bag", tuple(told)).motion["v_left"] == pytest.approx(v)
+    with pytest.raises(
+        BadInput, match=r"has no odometry; its topics are .*/cmd_vel .* name a field"
+    ):
+        read_bag(tmp_path / "bag")

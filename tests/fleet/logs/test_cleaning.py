@@ -284,3 +284,12 @@ def test_a_wrong_log_toml_is_one_sentence(tmp_path, text, said):
     with pytest.raises(BadInput) as error:
         gather([tmp_path / "tiles"])
     assert said in str(error.value)
+
+
+def test_turning_below_a_gyros_noise_is_none(tmp_path):
+    columns = logged(3, turning=False)
+    noise = np.random.default_rng(0).normal(0.0, 0.01, len(columns["omega"]))
+    found = cleaned(tmp_path, columns | {"omega": noise})
+    assert any("of less than its noise" in note for note in found.notes)
+    assert (found.runs[0].omega == 0.0).mean() > 0.99
+    assert not any("its noise" in note for note in cleaned(tmp_path, columns).notes)

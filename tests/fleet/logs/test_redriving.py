@@ -10,6 +10,7 @@ from driven_logs import exported
 
 from fleet.logs.judging import judge
 from fleet.logs.redriving import redrive, redriven_sentence, robot_of
+from fleet.motion.builds import resistance_of
 from fleet.motion.commanded import drive_commanded
 from fleet.motion.options import DriveOptions
 from fleet.robot import PRESETS
@@ -61,3 +62,14 @@ def test_the_loop_closes(tmp_path):
     assert bodies.body == pytest.approx(bodies.law, rel=0.02)
     assert "take what was measured within" in redriven_sentence(bodies)
     assert robot_of(judged).power.linear == pytest.approx(robot.power.linear, rel=0.02)
+
+
+def test_a_preset_without_electronics_is_a_robot(tmp_path):
+    """Heat at standstill is not more than its constant, however its digits are rounded."""
+    judged = judge(exported(tmp_path, "husky", rounds=4)[0])
+    law = replace(judged.preset.law, coefficients=(38.5, 0.0, 112.0, 0.0, 0.0))
+    law = replace(law, terms=("distance", "time", "angle", "turning", "square"))
+    for rolling in np.linspace(20.0, 60.0, 12):
+        law = replace(law, coefficients=(float(rolling), *law.coefficients[1:]))
+        spec = robot_of(replace(judged, preset=replace(judged.preset, law=law)))
+        assert resistance_of(spec).electronics < 1e-3
