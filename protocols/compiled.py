@@ -42,9 +42,20 @@ def kernel(function: F) -> F:
 
     With ``NUMBA_DISABLE_JIT`` set it is the function itself, whose integers wrap as compiled.
     """
+    return _compiled(function)
+
+
+def inlined(function: F) -> F:
+    """The same for what a hot loop does in every round: its machine code is put where it is called,
+    so that no arguments are passed, and arrays among them not counted.
+    """
+    return _compiled(function, forceinline=True)
+
+
+def _compiled(function: F, **options: Any) -> F:
     if numba.config.DISABLE_JIT:
         return np.errstate(over="ignore")(function)
-    compiled = numba.njit(function, error_model="numpy")
+    compiled = numba.njit(function, error_model="numpy", **options)
     with suppress(OSError):  # no file to go by, as at a prompt: compiled for this process
         compiled._cache = _KernelCache(function)
     result: F = compiled

@@ -12,12 +12,12 @@ from __future__ import annotations
 import math
 
 from fleet.motion.kernels.records import EMPTY
-from protocols.compiled import kernel
+from protocols.compiled import inlined, kernel
 
 STILL = 1e-9  # [m/s] a change of velocity below this is no contact
 
 
-@kernel
+@inlined
 def drain(mover, energy):
     """Take ``energy`` [J] from the battery, if it holds as much; returns the share that it did.
 
@@ -31,7 +31,7 @@ def drain(mover, energy):
     return 1.0
 
 
-@kernel
+@inlined
 def _book(mover, params, step, driven, braked, heat, roll, viscous, scrub, slip, contact, kinetic):
     """Pay for a ``step`` [s] and keep what for: work [J] done by motors, ``driven`` and ``braked``
     (0 or more), and taken by all else.
@@ -49,7 +49,7 @@ def _book(mover, params, step, driven, braked, heat, roll, viscous, scrub, slip,
     mover.braking += share * (cost * kinetic + (cost - back) * braked)
 
 
-@kernel
+@inlined
 def settle_up(mover, effort, params, build, x, y, heading, vx, vy, spin, step):
     """See what became of a ``step`` [s]: the body's pose and velocity after it are given. Pays for
     it; returns whether something pushed the body.

@@ -28,7 +28,7 @@ from fleet.motion.kernels.reference import SPARE, at, lay
 from fleet.motion.kernels.reservations import foresee, reserve
 from fleet.motion.kernels.tracking import compare, stop, track, track_freely
 from fleet.motion.kernels.wheels import push, push_freely
-from protocols.compiled import kernel
+from protocols.compiled import inlined, kernel
 
 RESTS = 1e-3  # [m/s] below which a robot at the end of its way is parked
 RESTS_TURNING = 1e-2  # [rad/s]
@@ -102,7 +102,7 @@ def embark(
     return launch(floor, traffic, active, segments, slot, path, step)
 
 
-@kernel
+@inlined
 def sets_off(mover, params, step):
     """Whether a mover drives in ``step``; if not it waits."""
     if mover.phase == WAITING:
@@ -118,7 +118,7 @@ def sets_off(mover, params, step):
     return True
 
 
-@kernel
+@inlined
 def press(mover, effort, references, params, build, believed, divided):
     """Decide how hard a mover pushes for the next part of a step that is ``divided`` into so many
     parts.
@@ -142,7 +142,7 @@ def press(mover, effort, references, params, build, believed, divided):
         push(mover, effort, params, build, believed, step, pace)
 
 
-@kernel
+@inlined
 def _see(mover, params, pushed, step):
     """See what became of a mover's ``step`` [s]: whether it was pushed, and what of its trip."""
     if pushed and not mover.touching:
@@ -166,7 +166,7 @@ def _see(mover, params, pushed, step):
         mover.phase = LOST
 
 
-@kernel
+@inlined
 def drives(mover, params, step, first):
     """Whether a mover's body is up to the engine in the next part of ``step``, the ``first`` of it
     or not.
@@ -176,7 +176,7 @@ def drives(mover, params, step, first):
     return mover.awake != 0 and mover.phase == DRIVING
 
 
-@kernel
+@inlined
 def witness(mover, effort, params, build, x, y, heading, vx, vy, spin, divided):
     """Let a mover know its body's pose and velocity after a part of a step."""
     part = params.dt / divided

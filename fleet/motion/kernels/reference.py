@@ -16,13 +16,13 @@ import numpy as np
 from fleet.motion.kernels.geometry import wrapped
 from fleet.motion.kernels.profile import NEAR, heading_at, position_at, profiled, stretch
 from fleet.motion.kernels.records import ARC, LINE, TURN
-from protocols.compiled import kernel
+from protocols.compiled import inlined, kernel
 
 ROUNDING = 1e-9  # share of a step
 SPARE = 4  # samples for which there is room behind a reference
 
 
-@kernel
+@inlined
 def at(references, slot, count, due):
     """The sample ``due`` of a reference, which may lie between two: (x, y, heading, way).
 

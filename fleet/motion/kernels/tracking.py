@@ -12,7 +12,7 @@ import math
 
 from fleet.motion.kernels.profile import scrub_share
 from fleet.motion.kernels.wheels import clipped
-from protocols.compiled import kernel
+from protocols.compiled import inlined, kernel
 
 PATIENT = 0.05  # [m] of error from which on the reference waits; at twice as much it stands
 LEVER = 0.15  # [m] that weighs errors of heading against those of place
@@ -22,7 +22,7 @@ ROLLS = 1e-3  # [m/s] from which on a wheel is taken to need its full rolling re
 CREEPING = 0.1  # [m/s] a robot may come to its end with
 
 
-@kernel
+@inlined
 def _face(effort, heading):
     """Set the cosine and sine of ``heading`` [rad], by the theorems of addition from one near by
     and series that are exact to the last bit but one.
@@ -38,7 +38,7 @@ def _face(effort, heading):
     effort.sin = effort.faced_sin * cos + effort.faced_cos * sin
 
 
-@kernel
+@inlined
 def compare(mover, effort, params, x, y, heading, step, share):
     """Set how far the body will be from the pose of its reference, (x, y) [m] and ``heading``
     [rad], after the coming ``step`` [s], and move on along the reference by ``share`` of a sample,
@@ -48,7 +48,7 @@ def compare(mover, effort, params, x, y, heading, step, share):
     dx, dy = x - mover.x - mover.vx * step, y - mover.y - mover.vy * step
     mover.error = math.sqrt(dx * dx + dy * dy)
     effort.along, effort.across, effort.turn = dx, dy, 0.0
-    speed, far = math.sqrt(mover.vx * mover.vx + mover.vy * mover.vy), mover.error
+    far = mover.error
     if not params.holonomic:
         facing = mover.heading + mover.spin * step
         _face(effort, facing)
@@ -59,6 +59,7 @@ def compare(mover, effort, params, x, y, heading, step, share):
     effort.stop = 0
     if mover.due >= mover.count - 1.0:
         mover.late += step
+        speed = math.sqrt(mover.vx * mover.vx + mover.vy * mover.vy)
         near = mover.error < params.margin and speed < CREEPING
         effort.stop = 1 if near or mover.late > 0.5 else 0
     pace = 1.0 if far < PATIENT else max(0.0, 2.0 - far / PATIENT)
@@ -77,7 +78,7 @@ def stop(mover, effort, params, build, pace):
     effort.right = clipped(push + twist, params.motor)
 
 
-@kernel
+@inlined
 def track(mover, effort, params, build, ahead, aside, pace):
     """Set the forces of wheels for the coming step, at whose end the reference goes ``ahead``
     [m/s] and turns ``aside`` [rad/s]. ``pace``: 1/step.

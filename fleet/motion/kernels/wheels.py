@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import math
 
-from protocols.compiled import kernel
+from protocols.compiled import inlined, kernel
 
 TURNS = 8  # of the iteration, at most
 SETTLED = 1e-13  # [N·s] a change below this ends it
 NOTHING = 1e-15  # [N·m·s] of scrub below this is none
 
 
-@kernel
+@inlined
 def clipped(value, most):
     """``value`` brought into [-most, most]."""
     return min(max(value, -most), most)
 
 
-@kernel
+@inlined
 def _resist(mover, effort, build, params, speed, step, pace):
     """Fill in the resistances for a ``step`` [s] from ``speed`` [m/s]; returns the speed and the
     turn rate [rad/s] after it, were there grip without end.
@@ -76,7 +76,7 @@ def _spun(net, grip, stiffness):
     return math.copysign(max(abs(net) - grip, 0.0), net) / stiffness
 
 
-@kernel
+@inlined
 def push(mover, effort, params, build, believed, step, pace):
     """From the forces of the wheels to force and torque on the body, for a ``step`` [s]."""
     h = params.half_track
@@ -106,7 +106,8 @@ def push(mover, effort, params, build, believed, step, pace):
     half = 0.5 * w * step
     bend = half + half * half * half / 3.0 if abs(half) < 0.05 else math.tan(min(half, 1.5))
     side = build.mass * pace * (u * bend - aside)  # that leaves no slip halfway through
-    effort.side = clipped(side, math.sqrt(max(0.0, 4.0 * build.grip * build.grip - ahead * ahead)))
+    left = max(0.0, 4.0 * build.grip * build.grip - ahead * ahead)  # of the grip, squared
+    effort.side = side if side * side < 0.5 * left else clipped(side, math.sqrt(left))
     effort.fx = ahead * cos - effort.side * sin
     effort.fy = ahead * sin + effort.side * cos
 
