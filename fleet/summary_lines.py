@@ -90,9 +90,10 @@ def _not_served(summary: Summary) -> str:
 
 
 def _accounts(summary: Summary) -> str:
-    """What the energy went into, the largest part first."""
+    """What the energy went into, the largest part first; what is written as nothing is left out."""
     parts = sorted(summary.energy_by_account.items(), key=lambda part: -abs(part[1]))
-    return ", ".join(f"{name} {energy:.1f} J" for name, energy in parts if energy) or "nothing"
+    written = ((name, f"{energy:.1f}") for name, energy in parts)
+    return ", ".join(f"{n} {e} J" for n, e in written if float(e) != 0.0) or "nothing"
 
 
 def _stream_rows(stream: StreamFigures) -> list[tuple[str, str]]:

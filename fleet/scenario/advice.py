@@ -19,6 +19,7 @@ FAR = 3.0  # diagonals of the floor, from which on a range is no range
 FAST = 15.0  # [m/s] from which on no robot drives on a floor
 SPINS = 16.0 * pi  # [rad/s] eight turns a second
 LARGE = 2.0  # [m] the radius of a robot
+UNKNOWN = ("payload", "error")  # to the controller
 WITH_STRAIGHT = ("cruise", "power", "capacity", "extra")
 """The keys of a robot that ``straight`` motion, which is Eq. (1) and a speed, looks at."""
 
@@ -47,10 +48,15 @@ def mixed_up(scenario: Scenario, arena: Arena) -> Iterator[str]:
 
 
 def idle_robot(scenario: Scenario, _arena: Arena) -> Iterator[str]:
-    """What a robot without a body does not have."""
+    """What a robot without a body does not have, and what a prediction does not know."""
+    plain = RobotSpec()
+    if scenario.motion.name == "path":
+        unknown = [f"robot.{n}" for n in UNKNOWN if getattr(scenario.robot, n) != 0.0]
+        yield from does_nothing(
+            unknown, 'in motion "path", the prediction of a controller that does not know of it'
+        )
     if scenario.motion.name != "straight":
         return
-    plain = RobotSpec()
     given = [f.name for f in fields(plain) if f.name not in WITH_STRAIGHT]
     idle = [f"robot.{n}" for n in given if getattr(scenario.robot, n) != getattr(plain, n)]
     yield from does_nothing(idle, "in straight motion, which is Eq. (1) and a speed")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import fsum
 
 import pytest
 
 import fleet
+from fleet.summary_lines import summary_lines
 from fleet.tally import RADIO, STANDING
 
 
@@ -42,3 +44,10 @@ def test_what_robots_drove_before_the_end_is_counted():
     assert summary.energy_drained == pytest.approx(19.355789473684212 * 0.76 * 4.0)
     booked = fsum(summary.energy_by_account.values())
     assert booked == pytest.approx(summary.energy_drained, abs=1e-9)
+
+
+def test_an_account_of_nothing_but_rounding_is_not_written():
+    summary = fleet.run(fleet.Scenario.of(motion="path", robots=20, range=4.0, rounds=2))
+    accounts = {"rolling": 12.34, "slip": -3e-14, "contact": 0.0, "braking": -0.06}
+    said = dict(summary_lines(replace(summary, energy_by_account=accounts)))
+    assert "rolling 12.3 J, braking -0.1 J" in said.values()

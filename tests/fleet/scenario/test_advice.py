@@ -32,6 +32,11 @@ def played(**keys):
 IDLE = [
     ({}, {"robot": {"mass": 3.0, "turn_rate": 2.0, "reverse": True, "radius": 0.2}}, "robot.mass"),
     ({}, {"robot": {"payload": 1.0, "scrub": 1.0}}, "robot.scrub"),
+    (
+        {"motion": "path"},
+        {"motion": "path", "robot": {"payload": 3.0, "error": 0.2}},
+        "robot.payload, robot.error do nothing",
+    ),
     ({"protocol": "bfs"}, {"search_radius": 1.0}, "search_radius does nothing in 'bfs'"),
     ({}, {"time": {"name": "rounds", "offers": 2}}, "time.offers does nothing"),
     (
