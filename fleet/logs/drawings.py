@@ -153,7 +153,7 @@ def errors_by_run(judgement: Judgement) -> Figure:
             mew=0,
         )
     axes.set(
-        xlabel="run, or what stands for one", ylabel="error of its trips [%]", ylim=(-105, 155),
+        xlabel="run, or what stands for one", ylabel="error of its trips [%]", ylim=(-105, 195),
         xlim=(0.4, len(runs) + 0.6),
     )  # fmt: skip
     axes.legend(loc="upper left", ncols=2)
