@@ -185,7 +185,7 @@ def _panels(listed: Sequence[Life], measure: str) -> Figure:
     for axes, place in zip(grid, places, strict=True):
         for number, way in enumerate(ways):
             _dots(axes, [find(listed, place, p, way) for p in PROTOCOLS], measure, number, way)
-        axes.set_xticks(range(len(PROTOCOLS)), PROTOCOLS, rotation=45, fontsize=7.5)
+        axes.set_xticks(range(len(PROTOCOLS)), PROTOCOLS, rotation=45, fontsize=8.0)
         axes.set_title(place)
         axes.grid(visible=False, axis="x")
     grid[0].set(ylabel="lifetime [events]", ylim=(0.0, None))

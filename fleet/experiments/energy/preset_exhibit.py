@@ -35,7 +35,7 @@ def by_preset(single: TripTable) -> Exhibit:
         axes.set_title(preset)
         axes.set(xlabel="straight distance [m]", xlim=(0.0, LONGEST), ylim=(0.0, 3.0 * LONGEST))
     panels[0].set_ylabel("drained / Eq. (1) of a metre [m]")
-    panels[0].legend(loc="upper left", fontsize=7.5)
+    panels[0].legend(loc="upper left", fontsize=8.0)
     return Exhibit(
         "presets",
         "What single trips drain, in metres that Eq. (1) of the same robot pays for. Linear:"
