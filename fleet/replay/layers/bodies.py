@@ -33,7 +33,8 @@ Floats = NDArray[np.float32]
 SEEN = 1e-4  # [m] that can be told apart
 NOSE = 1.9  # length of a mover's pointer, in its radii
 POINTS = 256  # of the compass, that a pointer is drawn towards: few values make small files
-COMPASS = np.column_stack([f(np.arange(POINTS) * (2.0 * np.pi / POINTS)) for f in (np.cos, np.sin)])
+ANGLES = np.arange(POINTS) * (2.0 * np.pi / POINTS)
+DIRECTIONS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])
 CROSS = 0.9 * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
 STROKES = {  # in radii of a robot: (lines, 2, 2)
     "exhausted": CROSS,
@@ -170,7 +171,7 @@ class Bodies(Layer):
         when, lengths, poses = joined(self._moving)
         heading, reach = poses[:, 4], NOSE * self._state.mark
         drawn = np.rint(heading * (POINTS / (2.0 * np.pi))).astype(int) % POINTS
-        noses = (reach * COMPASS)[drawn]
+        noses = (reach * DIRECTIONS)[drawn]
         sink.rows(
             MOVERS,
             when,

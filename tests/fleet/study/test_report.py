@@ -16,7 +16,6 @@ from click.testing import CliRunner
 from fleet.cli import main
 from fleet.scenario.errors import BadInput
 from fleet.study import StudyResult, run_jobs
-from fleet.study.report.csv_files import write_csv
 from fleet.study.report.derived import derived, possible, uncensored
 from fleet.study.report.layout import layout
 from fleet.study.report.quantities import measures
@@ -385,27 +384,3 @@ def test_lifetimes_that_were_cut_off_are_not_taken_for_short_ones():
 def layout_of(plan):
     """The layout with nothing but series."""
     return replace(plan, x=None, facets=())
-
-
-@pytest.mark.parametrize(
-    ("report", "said"),
-    [
-        ({"baseline": "rfta22"}, "report.baseline: unknown value 'rfta22'; did you mean 'rfta2'"),
-        ({"measures": ["lifetim"]}, "report.measures: unknown measure 'lifetim'"),
-        ({"x": "protocol"}, "report.x: is 'protocol', whose values are names"),
-    ],
-)
-def test_what_a_report_cannot_show_is_refused_before_any_run(tmp_path, report, said):
-    study = {"axes": {"protocol": ["rfta2", "gfgf2a"]}, "report": report}
-    with pytest.raises(BadInput, match=re.escape(said)):
-        sweep(study, tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
-def test_text_that_a_spreadsheet_would_compute_is_escaped(tmp_path):
-    path = tmp_path / "x.csv"
-    write_csv(path, ["=a", "b"], [["=1+1", -2.5], ["@x", "-0.5"], ["+cmd|x", "\tx"]])
-    assert [list(row.values()) for row in read(path)] == [
-        ["'=1+1", "-2.5"], ["'@x", "-0.5"], ["'+cmd|x", "'\tx"]
-    ]  # fmt: skip
-    assert path.read_text().startswith("'=a,b")
