@@ -10,10 +10,10 @@ demo: $(VENV)/.ready ## one run with the defaults, recorded
 	$(BIN)/fleet run --rrd out/demo.rrd
 
 test: $(VENV)/.ready-dev ## the fast tests
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 test-slow: $(VENV)/.ready-dev browser ## the slow tests: viewers, kills, studies, long runs
-	$(BIN)/python -m pytest -n auto -m slow
+	$(BIN)/python -m pytest -n auto --dist worksteal -m slow
 
 test-all: test test-slow ## all tests
 

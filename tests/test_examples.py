@@ -19,6 +19,7 @@ def said_by(name, *arguments):
     ).stdout  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_study_in_python_runs_and_goes_on(tmp_path):
     texts = [said_by("study_in_python.py", tmp_path / "out", 6) for _ in range(2)]
     assert texts[0] == texts[1]
@@ -42,6 +43,7 @@ def test_a_protocol_and_a_metric_of_ones_own():
     assert len(set(lives)) == 3  # they are not all the same protocol
 
 
+@pytest.mark.slow
 def test_short_trips_drain_more_than_eq_1_says():
     text = said_by("own_observer.py")
     ratios = [float(r) for r in re.findall(r"m: (\d\.\d+) over", text)]
@@ -50,6 +52,7 @@ def test_short_trips_drain_more_than_eq_1_says():
     assert 1.0 < ratios[-1] < 1.3 < 1.7 < ratios[0]
 
 
+@pytest.mark.slow
 def test_what_would_have_been_differs_from_what_was():
     lives = [int(life) for life in re.findall(r"(\d+)(?: events served)?\n", said_by("what_if.py"))]
     as_it_was, otherwise, ge = lives[-3:]
@@ -62,6 +65,7 @@ def test_each_example_is_tested():
         assert f'"{example.name}"' in tested
 
 
+@pytest.mark.slow
 def test_a_log_of_three_wheels_is_judged(tmp_path):
     text = said_by("own_log.py", tmp_path / "out")
     assert "half within 0 %" in text

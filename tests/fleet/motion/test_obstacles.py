@@ -79,8 +79,19 @@ def test_fifty_at_once_touch_neither_each_other_nor_obstacles(spec, count, world
     assert outcomes["arrived"] >= (72 if spec is SMALL else 40)
 
 
-@pytest.mark.parametrize("world", ["pit", "rooms", "warehouse"])
-@pytest.mark.parametrize("capacity", [120.0, 1e4])
+@pytest.mark.parametrize(
+    ("world", "capacity"),
+    [
+        ("rooms", 120.0),
+        ("pit", 1e4),
+        *(
+            pytest.param(world, capacity, marks=pytest.mark.slow)
+            for world, capacity in [
+                ("pit", 120.0), ("warehouse", 120.0), ("rooms", 1e4), ("warehouse", 1e4)
+            ]
+        ),
+    ],
+)  # fmt: skip
 def test_breakdowns_and_empty_batteries_in_traffic_stop_nobody_else(world, capacity):
     spec = replace(SMALL, capacity=capacity)
     motion, robots, arena, rng = fleet_in(world, 60, spec, seed=5)

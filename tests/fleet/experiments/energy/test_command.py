@@ -91,6 +91,7 @@ def test_a_folder_that_is_a_file_is_exit_2(tmp_path):
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_a_study_of_a_scenario_of_ones_own(tmp_path, tiny):
     """Its robot, its floor, its motion; and the robot's own law in the report."""
     (tmp_path / "own.toml").write_text(
