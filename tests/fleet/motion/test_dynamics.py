@@ -6,14 +6,18 @@ from dataclasses import replace
 from math import dist, fsum, inf, pi
 
 import numpy as np
+import pymunk
 import pytest
 from gaps import least_gap
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fleet.motion.builds import builds_of, resistance_of
+from fleet.motion.engine import Engine
 from fleet.motion.params import limits_of, margin_of
-from fleet.robot import PRESETS, RobotSpec
+from fleet.power import Battery
+from fleet.robot import PRESETS, Robot, RobotSpec
+from worlds.arena import Arena
 from worlds.catalogue import WORLDS
 
 SPEC = RobotSpec(capacity=1e5)
@@ -165,8 +169,34 @@ def test_shoves_are_taken_back(driving, drive, push, spin):
     assert off[rows[:, 1] > 5.5].max() < 0.005
 
 
-def test_two_that_meet_conserve_momentum_and_lose_energy(driving):
-    """Bodies without motors: one that rolls hits one that rolls."""
+@pytest.mark.parametrize("aside", [0.0, 0.1])
+def test_two_that_bump_without_motors_keep_their_momentum(aside):
+    """A heavy body hits a light one, head on or on its side: no energy comes of it."""
+    places = [(4.0, 5.0), (4.5, 5.0 + aside)]
+    robots = [Robot(k, xy, 0.0, Battery(1.0), 1.0, [], None) for k, xy in enumerate(places)]
+    builds = builds_of(SPEC, 2, np.random.default_rng(0))
+    builds["mass"][:2] = 30.0, 5.0
+    engine = Engine(Arena(), SPEC.radius, builds, robots)
+    for body, speed in zip(engine.bodies, (0.7, -0.3), strict=True):
+        body.body_type = pymunk.Body.DYNAMIC
+        body.velocity = (speed, 0.0)
+
+    def state():
+        masses = [body.mass for body in engine.bodies]
+        moved = [np.array(body.velocity) * body.mass for body in engine.bodies]
+        return masses, sum(moved), sum(body.kinetic_energy for body in engine.bodies)
+
+    masses, momentum, energy = state()
+    for _ in range(120):
+        engine.space.step(1.0 / 60.0)
+    _, after, left = state()
+    assert masses == pytest.approx([30.0, 5.0])
+    assert after == pytest.approx(momentum, abs=1e-9)
+    assert 0.0 < left < 0.99 * energy
+
+
+def test_two_that_meet_lose_energy_and_their_accounts_close(driving):
+    """One that drives hits one that drives."""
     spec = replace(SPEC, drive="holonomic")
     motion, robots = driving(
         [(2.0, 5.0), (5.0, 5.05)], spec, engine=True, traffic="free", replans=0
