@@ -36,6 +36,7 @@ def test_rfta3_lives_longer_beside_rfta2(tmp_path):
         assert (tmp_path / f"{protocol}.rrd").stat().st_size > 1_000_000
 
 
+@pytest.mark.slow
 def test_a_protocol_and_a_metric_of_ones_own():
     text = said_by("own_protocol.py")
     lives = [int(n) for n in re.findall(r"lives +(\d+) rounds", text)]

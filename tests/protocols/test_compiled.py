@@ -162,6 +162,7 @@ def test_the_folder_is_made_for_its_user_alone(tmp_path, monkeypatch):
     assert stat.S_IMODE(root.stat().st_mode) == 0o700
 
 
+@pytest.mark.slow
 def test_a_truncated_cache_is_compiled_anew(package):
     cache = package.parent / "cache"
     assert run(cache, PROBE, package.parent) == "6.0 1\n"

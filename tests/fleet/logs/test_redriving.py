@@ -51,6 +51,7 @@ def test_turning_costs_scrub_and_a_body_that_is_too_weak_does_not_arrive():
     assert not drive_commanded(SMALL, np.full(60, 3.0), 0.0 * turn[:60]).arrived
 
 
+@pytest.mark.slow
 def test_the_loop_closes(tmp_path):
     """Held-out drives, driven again by bodies of the preset, cost the same within 2 %."""
     ground, robot = exported(tmp_path, "small", rounds=8)

@@ -115,6 +115,7 @@ print(json.dumps(found))
 """
 
 
+@pytest.mark.slow
 def test_the_kernels_do_what_python_does():
     found = []
     for uncompiled in ("0", "1"):

@@ -164,6 +164,7 @@ def test_a_report_is_the_same_text_for_the_same_results(folder):
     assert (folder / "report.html").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_report_while_the_study_goes_on_tells_what_there_is(tmp_path):
     pages = []
 
@@ -204,6 +205,7 @@ def test_rows_of_another_kind_of_work_are_reported_too(tmp_path, make_tasks):
     assert {row["measure"] for row in read(tmp_path / "report" / "means.csv")} >= {"square"}
 
 
+@pytest.mark.slow
 def test_the_study_may_choose_axes_baseline_and_measures(tmp_path):
     chosen = {
         "x": "search_radius", "series": "protocol", "baseline": "gfgf2a",
